@@ -1,0 +1,98 @@
+//! One step of a three-mode interacting multiple model filter, n = 4, m = 2, with each filter.
+//!
+//! `cargo bench` prints the time of one step. Modes are constant velocity and two turns; the measurements are those of a target on
+//! a straight line, so that no step is special. One step is one call of [`Imm::step`] and nothing else.
+
+use divan::{Bencher, black_box};
+use immaculate::gaussian::Gaussian;
+use immaculate::imm::{Equations, Imm, Initial, Problem};
+use immaculate::model::motion::{Mode, constant_velocity, coordinated_turn, integrated_noise};
+use immaculate::model::{Measurement, PolarComponent};
+use immaculate::rule::RuleName;
+use nalgebra::{SMatrix, SVector, matrix, vector};
+
+fn main() {
+    divan::main();
+}
+
+/// The three-mode problem with a measurement and a rule.
+fn filter(
+    measurement: Measurement<f64, 4, 2>,
+    noise: [f64; 2],
+    rule: Option<&str>,
+) -> Imm<f64, 4, 2> {
+    let turn = 3.0_f64.to_radians();
+    let mode = |name: &str, transition| Mode {
+        name: name.to_owned(),
+        transition,
+        noise: integrated_noise(&1.0, &1.0),
+    };
+    let problem = Problem {
+        modes: vec![
+            mode("constant velocity", constant_velocity(&1.0)),
+            mode("left turn", coordinated_turn(&turn, &1.0)),
+            mode("right turn", coordinated_turn(&-turn, &1.0)),
+        ],
+        transition: vec![
+            vec![0.95, 0.025, 0.025],
+            vec![0.025, 0.95, 0.025],
+            vec![0.025, 0.025, 0.95],
+        ],
+        measurement,
+        measurement_noise: SMatrix::from_diagonal(&SVector::from(noise)),
+        rule: rule.map(|name| name.parse::<RuleName>().unwrap().rule().unwrap()),
+    };
+    let estimate = Gaussian {
+        mean: vector![15000.0, -180.0, 1000.0, 200.0],
+        covariance: SMatrix::from_diagonal(&vector![1e4, 1e2, 1e4, 1e2]),
+    };
+    let initial = Initial {
+        modes: vec![estimate; 3],
+        mode_probabilities: vec![0.8, 0.1, 0.1],
+    };
+    let equations = match rule {
+        None => Equations::kalman(),
+        Some(_) => Equations::cubature(),
+    };
+    Imm::new(problem, equations, &initial).unwrap()
+}
+
+/// Steps along measurements of a straight line, over and over from the same start.
+fn run(bencher: Bencher, filter: &Imm<f64, 4, 2>, measure: fn(f64, f64) -> SVector<f64, 2>) {
+    let mut running = filter.clone();
+    let mut k = 0.0;
+    bencher.bench_local(|| {
+        k += 1.0;
+        if k > 50.0 {
+            running = filter.clone();
+            k = 1.0;
+        }
+        let z = measure(15000.0 - 180.0 * k, 1000.0 + 200.0 * k);
+        black_box(running.step(black_box(Some(&z))).map(|step| step.step))
+    });
+}
+
+#[divan::bench]
+fn linear_kalman(bencher: Bencher) {
+    let h = matrix![1.0, 0.0, 0.0, 0.0; 0.0, 0.0, 1.0, 0.0];
+    let filter = filter(Measurement::Linear(h), [1600.0, 1600.0], None);
+    run(bencher, &filter, |x, y| vector![x, y]);
+}
+
+#[divan::bench(args = ["cubature-3", "unscented", "simplex-5", "cubature-5"])]
+fn linear_cubature(bencher: Bencher, rule: &str) {
+    let h = matrix![1.0, 0.0, 0.0, 0.0; 0.0, 0.0, 1.0, 0.0];
+    let filter = filter(Measurement::Linear(h), [1600.0, 1600.0], Some(rule));
+    run(bencher, &filter, |x, y| vector![x, y]);
+}
+
+#[divan::bench(args = ["cubature-3", "unscented", "simplex-5", "cubature-5", "gauss-hermite-3"])]
+fn range_bearing_cubature(bencher: Bencher, rule: &str) {
+    let measurement = Measurement::Polar {
+        components: [PolarComponent::Range, PolarComponent::Bearing],
+        position: [0, 2],
+        sensor: [0.0, 0.0],
+    };
+    let filter = filter(measurement, [1600.0, 49e-6], Some(rule));
+    run(bencher, &filter, |x, y| vector![x.hypot(y), y.atan2(x)]);
+}

@@ -1,0 +1,24 @@
+//! Immaculate: the executable specification of the interacting multiple model filter.
+//!
+//! The map, in reading order:
+//!
+//! | room           | what is in it                                                                            |
+//! |----------------|------------------------------------------------------------------------------------------|
+//! | [`number`]     | the number systems in which every equation is evaluated                                   |
+//! | [`matrix`]     | Cholesky and L D Lᵀ, for every number system                                              |
+//! | [`gaussian`]   | mean and covariance, density, moments of a mixture                                        |
+//! | [`rule`]       | cubature rules in exact form, their moments and degrees                                   |
+//! | [`model`]      | how the target moves, what the sensor sees                                                |
+//! | [`filter`]     | one filter: Kalman and cubature                                                           |
+//! | [`imm`]        | the cycle                                                                                 |
+//!
+//! Arrows run downwards: numbers know nothing, equations know numbers and matrices. Equations, filters and the cycle read no files,
+//! draw no random numbers and print nothing.
+
+pub mod filter;
+pub mod gaussian;
+pub mod imm;
+pub mod matrix;
+pub mod model;
+pub mod number;
+pub mod rule;

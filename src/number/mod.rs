@@ -1,0 +1,100 @@
+//! The number systems in which the equations are evaluated.
+//!
+//! Every equation of this crate is written once, generic over the number it computes with. The same text then runs on
+//! ordinary doubles, on exact rationals, on surds and on rational functions of named unknowns, and each of these says
+//! something else about it:
+//!
+//! | number system                         | bound it meets            | what an evaluation gives                        |
+//! |---------------------------------------|---------------------------|-------------------------------------------------|
+//! | `f64`                                 | [`Real`]                  | the ordinary, fast filter                       |
+//! | [`Rational`]                          | [`Field`]                 | identities with no tolerance                    |
+//! | [`Surd`]                              | [`Roots`]                 | cubature points as the papers write them        |
+//! | [`RationalFunction`]                  | [`Roots`]                 | identities for all inputs, and for every n      |
+//!
+//! Three traits say what an equation needs, and an equation has the weakest bound it can live with:
+//! [`Field`] (+ − × ÷), [`Roots`] (the square roots of rationals, all that cubature points need) and [`Real`]
+//! (roots, exp, ln, sin, cos, atan2, π, and an order).
+//!
+//! An operation that has no answer (a division by zero, say) is a value that says so, [`Field::undecided`], and never a
+//! panic: it is unequal to everything, itself included, and every operation on it gives it again.
+
+mod decimal;
+mod float;
+mod operators;
+mod polynomial;
+mod radicals;
+mod rational;
+mod rational_function;
+mod surd;
+
+pub use polynomial::Polynomial;
+pub use rational::Rational;
+pub use rational_function::RationalFunction;
+pub use surd::Surd;
+
+use nalgebra::{ClosedAddAssign, ClosedDivAssign, ClosedMulAssign, ClosedSubAssign, Scalar};
+use num_traits::{One, Zero};
+use std::ops::Neg;
+
+/// A number that can be added, subtracted, multiplied and divided: all that most equations of a filter need.
+///
+/// The bounds are those under which nalgebra multiplies and adds matrices with shapes in their types.
+pub trait Field:
+    Scalar
+    + Zero
+    + One
+    + ClosedAddAssign
+    + ClosedSubAssign
+    + ClosedMulAssign
+    + ClosedDivAssign
+    + Neg<Output = Self>
+{
+    /// The rational p/q in this number system: exact where it can be, else the nearest.
+    fn rational(value: &Rational) -> Self;
+
+    /// The value that says that an operation had no answer. It is unequal to every value, itself included.
+    fn undecided() -> Self;
+
+    /// The fraction `numerator / denominator` of two integers.
+    fn ratio(numerator: i64, denominator: i64) -> Self {
+        Self::rational(&Rational::new(numerator, denominator))
+    }
+
+    /// An integer.
+    fn integer(value: i64) -> Self {
+        Self::ratio(value, 1)
+    }
+}
+
+/// A field that also holds the square roots of rationals: the coordinates of cubature points.
+pub trait Roots: Field {
+    /// The surd in this number system: exact where it can be, else the nearest.
+    fn surd(value: &Surd) -> Self;
+}
+
+/// An ordered number with roots and elementary functions.
+///
+/// `partial_cmp` answers `None` where a comparison cannot be decided; an equation that branches on a comparison must
+/// say what it does then.
+pub trait Real: Roots + PartialOrd {
+    /// The ratio of a circle's circumference to its diameter.
+    fn pi() -> Self;
+    /// The square root; [`Field::undecided`] for a negative number.
+    #[must_use]
+    fn sqrt(&self) -> Self;
+    /// The exponential.
+    #[must_use]
+    fn exp(&self) -> Self;
+    /// The natural logarithm; −∞ or [`Field::undecided`] at zero, [`Field::undecided`] below.
+    #[must_use]
+    fn ln(&self) -> Self;
+    /// The sine of an angle in radians.
+    #[must_use]
+    fn sin(&self) -> Self;
+    /// The cosine of an angle in radians.
+    #[must_use]
+    fn cos(&self) -> Self;
+    /// The angle of the point (`x`, `self`) in (−π, π]: `y.atan2(&x)`.
+    #[must_use]
+    fn atan2(&self, x: &Self) -> Self;
+}
