@@ -1,0 +1,153 @@
+//! Gaussian estimates: mean and covariance, the density of a residual, and the moments of a mixture.
+//!
+//! After this file the reader knows the three facts about Gaussians on which the interacting multiple model filter
+//! stands: how likely a residual is ([`log_density`]), and what mean and covariance a weighted mixture has
+//! ([`mixture_mean`], [`mixture_covariance`]). The mixture is replaced by one Gaussian with these two moments twice in a
+//! cycle: where the estimates are mixed, and where they are combined for output.
+
+use crate::matrix::{Ldl, log_determinant, quadratic_form};
+use crate::number::{Field, Real};
+use nalgebra::{SMatrix, SVector};
+
+/// A mean and a covariance.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Gaussian<T, const N: usize> {
+    /// The mean, in the units of the state.
+    pub mean: SVector<T, N>,
+    /// The covariance, N × N, symmetric, in products of the units of the state.
+    pub covariance: SMatrix<T, N, N>,
+}
+
+impl<T: Field, const N: usize> Gaussian<T, N> {
+    /// The estimate with zero mean and zero covariance, to be overwritten.
+    pub fn zeros() -> Self {
+        Self {
+            mean: SVector::zeros(),
+            covariance: SMatrix::zeros(),
+        }
+    }
+}
+
+/// Mean of a mixture — zhu2016 (55), (59), liu2017 (12), (23).
+///
+/// ```text
+/// x̂⁰ʲ = Σᵢ μᵢ∣ⱼ · x̂ⁱ   (mixed)          x̂ = Σⱼ μʲ · x̂ʲ   (combined)
+/// ```
+///
+/// | paper     | here                  | shape | meaning                                             |
+/// |-----------|-----------------------|-------|-----------------------------------------------------|
+/// | μᵢ∣ⱼ, μʲ  | `weights[i]`          | R     | probability of component i, Σ = 1                    |
+/// | x̂ⁱ        | `components[i].mean`  | N     | mean of component i, units of the state              |
+///
+/// Why: law of total expectation, E x = Σᵢ P(i) E(x ∣ i).
+///
+/// Errata: zhu2016 (55) lacks its limits i = 1…r and (59) a hat; liu2017 (12) starts its sum at i = 0. All notational.
+///
+/// # Examples
+///
+/// ```
+/// use immaculate::gaussian::{Gaussian, mixture_mean};
+/// use nalgebra::{matrix, vector};
+///
+/// let low = Gaussian { mean: vector![0.0], covariance: matrix![1.0] };
+/// let high = Gaussian { mean: vector![4.0], covariance: matrix![1.0] };
+/// assert_eq!(mixture_mean(&[0.75, 0.25], &[low, high]), vector![1.0]);
+/// ```
+///
+/// Evidence: `mixed_moments_are_those_of_the_mixture` (symbolic).
+pub fn mixture_mean<T: Field, const N: usize>(
+    weights: &[T],
+    components: &[Gaussian<T, N>],
+) -> SVector<T, N> {
+    let mut sum = SVector::zeros();
+    for (weight, component) in weights.iter().zip(components) {
+        sum += &component.mean * weight.clone();
+    }
+    sum
+}
+
+/// Covariance of a mixture — zhu2016 (56), (60), liu2017 (12), (24).
+///
+/// ```text
+/// P⁰ʲ = Σᵢ μᵢ∣ⱼ · [ Pⁱ + (x̂ⁱ − x̂⁰ʲ)(x̂ⁱ − x̂⁰ʲ)ᵀ ]   (mixed)
+/// P   = Σⱼ μʲ   · [ Pʲ + (x̂ʲ − x̂)(x̂ʲ − x̂)ᵀ ]        (combined)
+/// ```
+///
+/// | paper     | here                        | shape | meaning                                     |
+/// |-----------|-----------------------------|-------|---------------------------------------------|
+/// | μᵢ∣ⱼ, μʲ  | `weights[i]`                | R     | probability of component i, Σ = 1           |
+/// | Pⁱ        | `components[i].covariance`  | N × N | covariance of component i                   |
+/// | x̂ⁱ        | `components[i].mean`        | N     | mean of component i                         |
+/// | x̂⁰ʲ, x̂    | `mean`                      | N     | mean of the mixture, [`mixture_mean`]       |
+///
+/// Why: law of total covariance. The second term is the spread of the means; without it the filter is over-confident
+/// exactly when its models disagree.
+///
+/// Errata: liu2017 (12) starts its sum at i = 0 (notational).
+///
+/// # Examples
+///
+/// ```
+/// use immaculate::gaussian::{Gaussian, mixture_covariance};
+/// use nalgebra::{matrix, vector};
+///
+/// let low = Gaussian { mean: vector![0.0], covariance: matrix![1.0] };
+/// let high = Gaussian { mean: vector![4.0], covariance: matrix![1.0] };
+/// // 1 + ¾ · 1² + ¼ · 3²
+/// assert_eq!(mixture_covariance(&[0.75, 0.25], &[low, high], &vector![1.0]), matrix![4.0]);
+/// ```
+///
+/// Evidence: `mixed_moments_are_those_of_the_mixture` (symbolic).
+pub fn mixture_covariance<T: Field, const N: usize>(
+    weights: &[T],
+    components: &[Gaussian<T, N>],
+    mean: &SVector<T, N>,
+) -> SMatrix<T, N, N> {
+    let mut sum = SMatrix::zeros();
+    for (weight, component) in weights.iter().zip(components) {
+        let deviation = &component.mean - mean;
+        let spread = &deviation * deviation.transpose();
+        sum += (&component.covariance + spread) * weight.clone();
+    }
+    sum
+}
+
+/// Natural logarithm of the Gaussian density of a residual — zhu2016 (57), liu2017 (21).
+///
+/// ```text
+/// ln L = −½ ( νᵀ S⁻¹ ν + ln|S| + M ln 2π ),     that is  L = |2πS|^(−½) · exp(−½ νᵀ S⁻¹ ν)
+/// ```
+///
+/// | paper    | here         | shape | meaning                                                              |
+/// |----------|--------------|-------|----------------------------------------------------------------------|
+/// | z − ẑ, ν | `residual`   | M     | the innovation, angles wrapped                                        |
+/// | V, S     | `covariance` | M × M | innovation covariance as L D Lᵀ, [`ldl`](crate::matrix::ldl)          |
+///
+/// Why: the density of N(0, S) at ν, with |2πS| = (2π)ᴹ|S|. The logarithm is taken here and never left before the
+/// probabilities are normalised, so a likelihood that would underflow a double is an ordinary number. The constant
+/// (2π)^(−M/2) is common to all modes and cancels in their probabilities; |S|^(−½) is not and does not.
+///
+/// Errata: zhu2016 (57) writes the matrix 2πV under a scalar root and names the residual as the third argument of N;
+/// liu2017 (21) prints the exponent −n_z/2 for −½, which squares the determinant when n_z = 2 and favours models with a small
+/// innovation covariance.
+///
+/// # Examples
+///
+/// ```
+/// use immaculate::{gaussian::log_density, matrix::ldl};
+/// use nalgebra::{matrix, vector};
+///
+/// let log_likelihood: f64 = log_density(&vector![2.0], &ldl(&matrix![4.0]));
+/// let by_hand = -0.5 * (1.0 + 4.0_f64.ln() + (2.0 * std::f64::consts::PI).ln());
+/// assert!((log_likelihood - by_hand).abs() < 1e-15);
+/// ```
+///
+/// Evidence: `the_density_integrates_to_one` (property), `printed_likelihood_exponent_squares_the_determinant`,
+/// `printed_likelihood_without_the_determinant_of_two_pi_is_not_a_density`.
+pub fn log_density<T: Real, const M: usize>(residual: &SVector<T, M>, covariance: &Ldl<T, M>) -> T {
+    let dimension = T::integer(i64::try_from(M).unwrap_or(i64::MAX));
+    let two_pi = T::pi() * T::integer(2);
+    let squared_distance = quadratic_form(covariance, residual);
+    let log_determinant_of_two_pi_s = log_determinant(covariance) + dimension * two_pi.ln();
+    -(squared_distance + log_determinant_of_two_pi_s) / T::integer(2)
+}

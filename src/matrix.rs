@@ -1,0 +1,274 @@
+//! Factorisations of symmetric positive definite matrices, for every number system.
+//!
+//! After this file the reader knows the two triangular factorisations that the filters use, and why there are two:
+//!
+//! - [`cholesky`], P = S Sᵀ, needs square roots. The cubature filters draw their points with it.
+//! - [`ldl`], P = L D Lᵀ with a unit diagonal in L, needs only + − × ÷. Gains, log-determinants and quadratic forms come
+//!   from it, so these equations run on exact rationals and on rational functions too.
+//!
+//! Both read the lower triangle only. Neither repairs a matrix: a pivot that is not positive is an error.
+
+use crate::number::{Field, Real};
+use nalgebra::{SMatrix, SVector};
+use std::cmp::Ordering;
+
+/// A pivot of a factorisation was not positive, or could not be shown to be.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("is not positive definite: pivot {} of {dimension} is {}", pivot + 1, if *.decided { "not positive" } else { "not a number, or of undecided sign" })]
+pub struct NotPositiveDefinite {
+    /// The row of the pivot, counted from 0.
+    pub pivot: usize,
+    /// The number of rows.
+    pub dimension: usize,
+    /// Whether the pivot is known to be zero or negative; otherwise its sign could not be decided.
+    pub decided: bool,
+}
+
+/// The square root of a covariance: its lower Cholesky factor — zhu2016 (1), (27).
+///
+/// ```text
+/// P = S Sᵀ,   Sⱼⱼ = √(Pⱼⱼ − Σ₍k<j₎ Sⱼₖ²),   Sᵢⱼ = (Pᵢⱼ − Σ₍k<j₎ Sᵢₖ Sⱼₖ) / Sⱼⱼ  for i > j
+/// ```
+///
+/// | paper | here       | shape | meaning                                                     |
+/// |-------|------------|-------|-------------------------------------------------------------|
+/// | P     | `matrix`   | N × N | a covariance; only its lower triangle is read                |
+/// | S     | the result | N × N | lower triangular, positive diagonal; unit: root of P's unit  |
+///
+/// Why: with x = x̂ + S ξ and ξ of zero mean and unit covariance, x has mean x̂ and covariance S Sᵀ = P. Any other square
+/// root would do as well; the lower Cholesky factor is the papers' choice and this crate's convention.
+///
+/// # Errors
+///
+/// [`NotPositiveDefinite`] when a pivot is not positive.
+///
+/// # Examples
+///
+/// ```
+/// use immaculate::matrix::cholesky;
+/// use nalgebra::matrix;
+///
+/// let root = cholesky(&matrix![4.0, 2.0; 2.0, 10.0]).unwrap();
+/// assert_eq!(root, matrix![2.0, 0.0; 1.0, 3.0]);
+/// ```
+///
+/// Evidence: `the_cholesky_factor_times_its_transpose_is_the_matrix` (exact),
+/// `a_matrix_that_is_not_positive_definite_has_no_cholesky_factor`.
+pub fn cholesky<T: Real, const N: usize>(
+    matrix: &SMatrix<T, N, N>,
+) -> Result<SMatrix<T, N, N>, NotPositiveDefinite> {
+    let mut root = SMatrix::<T, N, N>::zeros();
+    for j in 0..N {
+        let mut pivot = matrix[(j, j)].clone();
+        for k in 0..j {
+            pivot -= root[(j, k)].clone() * root[(j, k)].clone();
+        }
+        check_pivot(&pivot, j, N)?;
+        root[(j, j)] = pivot.sqrt();
+        for i in j + 1..N {
+            let mut entry = matrix[(i, j)].clone();
+            for k in 0..j {
+                entry -= root[(i, k)].clone() * root[(j, k)].clone();
+            }
+            root[(i, j)] = entry / root[(j, j)].clone();
+        }
+    }
+    Ok(root)
+}
+
+/// A pivot must be known to be positive.
+fn check_pivot<T: Real>(
+    pivot: &T,
+    row: usize,
+    dimension: usize,
+) -> Result<(), NotPositiveDefinite> {
+    let order = pivot.partial_cmp(&T::zero());
+    if order == Some(Ordering::Greater) {
+        return Ok(());
+    }
+    Err(NotPositiveDefinite {
+        pivot: row,
+        dimension,
+        decided: order.is_some(),
+    })
+}
+
+/// The factors of P = L D Lᵀ; see [`ldl`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ldl<T, const N: usize> {
+    /// L: lower triangular with ones on the diagonal.
+    pub lower: SMatrix<T, N, N>,
+    /// The diagonal of D.
+    pub diagonal: SVector<T, N>,
+}
+
+/// The factorisation P = L D Lᵀ.
+///
+/// ```text
+/// Dⱼ = Pⱼⱼ − Σ₍k<j₎ Lⱼₖ² Dₖ,   Lᵢⱼ = (Pᵢⱼ − Σ₍k<j₎ Lᵢₖ Lⱼₖ Dₖ) / Dⱼ  for i > j
+/// ```
+///
+/// Source: Golub and Van Loan, Matrix Computations, 4th edition, section 4.1.2.
+///
+/// A pivot of zero makes what follows it [`Field::undecided`]; for an ordered number system [`check_positive_definite`]
+/// says so as an error.
+///
+/// # Examples
+///
+/// ```
+/// use immaculate::matrix::ldl;
+/// use nalgebra::{matrix, vector};
+///
+/// let factors = ldl(&matrix![4.0, 2.0; 2.0, 10.0]);
+/// assert_eq!(factors.lower, matrix![1.0, 0.0; 0.5, 1.0]);
+/// assert_eq!(factors.diagonal, vector![4.0, 9.0]);
+/// ```
+///
+/// Evidence: `the_ldl_factors_multiply_to_the_matrix` (symbolic).
+pub fn ldl<T: Field, const N: usize>(matrix: &SMatrix<T, N, N>) -> Ldl<T, N> {
+    let mut lower = SMatrix::<T, N, N>::identity();
+    let mut diagonal = SVector::<T, N>::zeros();
+    for j in 0..N {
+        let mut pivot = matrix[(j, j)].clone();
+        for k in 0..j {
+            pivot -= lower[(j, k)].clone() * lower[(j, k)].clone() * diagonal[k].clone();
+        }
+        diagonal[j] = pivot;
+        for i in j + 1..N {
+            let mut entry = matrix[(i, j)].clone();
+            for k in 0..j {
+                entry -= lower[(i, k)].clone() * lower[(j, k)].clone() * diagonal[k].clone();
+            }
+            lower[(i, j)] = entry / diagonal[j].clone();
+        }
+    }
+    Ldl { lower, diagonal }
+}
+
+/// All pivots of a factorisation must be known to be positive: only then is L D Lᵀ positive definite.
+///
+/// # Errors
+///
+/// [`NotPositiveDefinite`] with the first pivot that is not.
+pub fn check_positive_definite<T: Real, const N: usize>(
+    factors: &Ldl<T, N>,
+) -> Result<(), NotPositiveDefinite> {
+    for (row, pivot) in factors.diagonal.iter().enumerate() {
+        check_pivot(pivot, row, N)?;
+    }
+    Ok(())
+}
+
+/// The solution X of L D Lᵀ X = B, column by column: forward substitution, division by D, back substitution.
+///
+/// Source: Golub and Van Loan, Matrix Computations, 4th edition, section 3.1.
+///
+/// Evidence: `solving_with_the_ldl_factors_inverts_the_matrix` (symbolic).
+pub fn solve<T: Field, const N: usize, const C: usize>(
+    factors: &Ldl<T, N>,
+    right_side: &SMatrix<T, N, C>,
+) -> SMatrix<T, N, C> {
+    let mut solution = right_side.clone();
+    for column in 0..C {
+        for i in 0..N {
+            for k in 0..i {
+                let known = factors.lower[(i, k)].clone() * solution[(k, column)].clone();
+                solution[(i, column)] -= known;
+            }
+        }
+        for i in 0..N {
+            solution[(i, column)] /= factors.diagonal[i].clone();
+        }
+        for i in (0..N).rev() {
+            for k in i + 1..N {
+                let known = factors.lower[(k, i)].clone() * solution[(k, column)].clone();
+                solution[(i, column)] -= known;
+            }
+        }
+    }
+    solution
+}
+
+/// The quadratic form vᵀ P⁻¹ v = Σᵢ yᵢ² / Dᵢ with L y = v.
+///
+/// Source: P⁻¹ = L⁻ᵀ D⁻¹ L⁻¹, so vᵀ P⁻¹ v = (L⁻¹v)ᵀ D⁻¹ (L⁻¹v).
+///
+/// Evidence: `the_quadratic_form_is_the_one_of_the_inverse` (symbolic).
+pub fn quadratic_form<T: Field, const N: usize>(factors: &Ldl<T, N>, vector: &SVector<T, N>) -> T {
+    let mut y = vector.clone();
+    let mut sum = T::zero();
+    for i in 0..N {
+        for k in 0..i {
+            let known = factors.lower[(i, k)].clone() * y[k].clone();
+            y[i] -= known;
+        }
+        sum += y[i].clone() * y[i].clone() / factors.diagonal[i].clone();
+    }
+    sum
+}
+
+/// The logarithm of the determinant, ln|P| = Σᵢ ln Dᵢ.
+///
+/// Source: |L D Lᵀ| = |D|, since L has a unit diagonal.
+///
+/// Evidence: `the_log_determinant_is_the_logarithm_of_the_determinant` (property).
+pub fn log_determinant<T: Real, const N: usize>(factors: &Ldl<T, N>) -> T {
+    let mut sum = T::zero();
+    for pivot in &factors.diagonal {
+        sum += pivot.ln();
+    }
+    sum
+}
+
+/// A matrix is symmetric when it equals its transpose entry by entry.
+pub fn is_symmetric<T: Field, const N: usize>(matrix: &SMatrix<T, N, N>) -> bool {
+    (0..N).all(|i| (0..i).all(|j| matrix[(i, j)] == matrix[(j, i)]))
+}
+
+/// A symmetric matrix is positive semidefinite when its elimination meets no negative pivot, and below a pivot of zero
+/// nothing but zeros.
+///
+/// Noise covariances of low rank are legitimate (zhu2016's has rank two), and elimination in rounded arithmetic leaves a
+/// rest of their zero pivots of the order of N roundings of the diagonal: a pivot counts as zero below N · 2⁻⁵⁰ of its
+/// diagonal entry, and an entry below it when the same holds against the geometric mean of its two diagonal entries.
+pub fn is_positive_semidefinite<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> bool {
+    let rounding = T::integer(i64::try_from(N).unwrap_or(i64::MAX)) / T::integer(1 << 50);
+    let mut rest = matrix.clone();
+    for j in 0..N {
+        let noise = rounding.clone() * matrix[(j, j)].clone();
+        let pivot = rest[(j, j)].clone();
+        let is_negligible = pivot <= noise;
+        if is_negligible && pivot < -noise {
+            return false;
+        }
+        if is_negligible {
+            let vanishes = |i: usize| {
+                let square = rest[(i, j)].clone() * rest[(i, j)].clone();
+                let bound = matrix[(i, i)].clone() * matrix[(j, j)].clone();
+                square <= bound * rounding.clone()
+            };
+            if !(j + 1..N).all(vanishes) {
+                return false;
+            }
+            continue;
+        }
+        for i in j + 1..N {
+            let factor = rest[(i, j)].clone() / pivot.clone();
+            for k in j + 1..N {
+                let eliminated = factor.clone() * rest[(j, k)].clone();
+                rest[(i, k)] -= eliminated;
+            }
+        }
+    }
+    true
+}
+
+/// An entry is finite when it minus itself is zero: an infinity, a value that is not a number and an undecided value are not.
+pub fn is_finite<T: Field>(value: &T) -> bool {
+    value.clone() - value.clone() == T::zero()
+}
+
+/// All entries are finite; see [`is_finite`].
+pub fn all_finite<T: Field, const R: usize, const C: usize>(matrix: &SMatrix<T, R, C>) -> bool {
+    matrix.iter().all(is_finite)
+}
