@@ -1,0 +1,151 @@
+//! The Gauss-Hermite product rule: m nodes a coordinate, mⁿ points, degree 2m − 1; a reference of higher degree.
+//!
+//! After this file the reader has a rule against which the others can be measured where no closed form exists. The nodes of one
+//! coordinate are roots of a Hermite polynomial; up to m = 5 their squares and weights are surds, so the rule's moments are exact
+//! too: odd ones vanish by symmetry, even ones need the squares only, and the moments of a product are products of moments.
+
+use super::{InvalidRule, Rule};
+use crate::number::{Field, Rational, Real, Surd};
+use nalgebra::SVector;
+use num_traits::{One, Zero};
+
+/// A node of one coordinate: ±√`square`, or zero.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Node {
+    /// The sign of the node: −1, 0 or 1.
+    pub sign: i64,
+    /// The square of the node.
+    pub square: Surd,
+    /// The weight of the node.
+    pub weight: Surd,
+}
+
+/// The nodes and weights of one coordinate for the standard Gaussian.
+///
+/// | m | nodes                | weights                |
+/// |---|----------------------|------------------------|
+/// | 2 | ±1                   | 1/2                    |
+/// | 3 | 0; ±√3               | 2/3; 1/6               |
+/// | 4 | ±√(3 ± √6)           | (3 ∓ √6)/12            |
+/// | 5 | 0; ±√(5 ± √10)       | 8/15; (7 ∓ 2√10)/60    |
+///
+/// Source: Abramowitz and Stegun 25.4.46, in the variable √2 x. The filter of this rule is the Gauss-Hermite Kalman filter of
+/// Ito and Xiong 2000.
+///
+/// # Errors
+///
+/// [`InvalidRule::Nodes`] for another number of nodes.
+///
+/// Evidence: `gauss_hermite_rule_has_degree_two_m_minus_one` (exact).
+pub fn nodes(m: usize) -> Result<Vec<Node>, InvalidRule> {
+    let surd = |rational: Rational, coefficient: Rational, radicand: i64| {
+        let root = Surd::root(&Rational::new(radicand, 1));
+        Surd::rational(&rational) + Surd::rational(&coefficient) * root
+    };
+    let whole = |value: Rational| Surd::rational(&value);
+    let q = Rational::new;
+    let (centre, pairs) = match m {
+        2 => (None, vec![(Surd::one(), whole(q(1, 2)))]),
+        3 => (Some(whole(q(2, 3))), vec![(whole(q(3, 1)), whole(q(1, 6)))]),
+        4 => (
+            None,
+            vec![
+                (surd(q(3, 1), q(1, 1), 6), surd(q(1, 4), q(-1, 12), 6)),
+                (surd(q(3, 1), q(-1, 1), 6), surd(q(1, 4), q(1, 12), 6)),
+            ],
+        ),
+        5 => (
+            Some(whole(q(8, 15))),
+            vec![
+                (surd(q(5, 1), q(1, 1), 10), surd(q(7, 60), q(-1, 30), 10)),
+                (surd(q(5, 1), q(-1, 1), 10), surd(q(7, 60), q(1, 30), 10)),
+            ],
+        ),
+        nodes => return Err(InvalidRule::Nodes { nodes }),
+    };
+    let mut all = Vec::new();
+    if let Some(weight) = centre {
+        all.push(Node {
+            sign: 0,
+            square: Surd::zero(),
+            weight,
+        });
+    }
+    for (square, weight) in pairs {
+        for sign in [1, -1] {
+            all.push(Node {
+                sign,
+                square: square.clone(),
+                weight: weight.clone(),
+            });
+        }
+    }
+    Ok(all)
+}
+
+/// The rule's moment Σ w x^power in one coordinate, exactly.
+pub fn moment(nodes: &[Node], power: usize) -> Surd {
+    let mut sum = Surd::zero();
+    for node in nodes {
+        let mut term = node.weight.clone();
+        if power % 2 == 1 {
+            // ± nodes share square and weight, so an odd power leaves nothing of a pair, and the centre is zero.
+            continue;
+        }
+        for _ in 0..power / 2 {
+            term *= node.square.clone();
+        }
+        sum += term;
+    }
+    sum
+}
+
+/// The product rule in N dimensions with m nodes a coordinate.
+///
+/// ```text
+/// ξ = (x₍i₁₎, …, x₍iₙ₎),   w = w₍i₁₎ ⋯ w₍iₙ₎
+/// ```
+///
+/// Source: as [`nodes`].
+///
+/// # Errors
+///
+/// [`InvalidRule::Nodes`] when m is not 2 to 5, [`InvalidRule::Dimension`] in dimension zero.
+///
+/// # Examples
+///
+/// ```
+/// let rule = immaculate::rule::gauss_hermite::gauss_hermite::<f64, 2>(3).unwrap();
+/// assert_eq!(rule.points.len(), 9);
+/// ```
+pub fn gauss_hermite<T: Real, const N: usize>(m: usize) -> Result<Rule<T, N>, InvalidRule> {
+    if N == 0 {
+        return Err(InvalidRule::Dimension {
+            rule: "gauss-hermite",
+            least: 1,
+            dimension: N,
+            reason: "",
+        });
+    }
+    let nodes = nodes(m)?;
+    let mut points = Vec::new();
+    let mut weights = Vec::new();
+    for index in 0..m.pow(u32::try_from(N).unwrap_or(u32::MAX)) {
+        let mut digits = index;
+        let mut weight = T::one();
+        let mut point = SVector::<T, N>::zeros();
+        for coordinate in 0..N {
+            let node = &nodes[digits % m];
+            digits /= m;
+            point[coordinate] = T::surd(&node.square).sqrt() * T::integer(node.sign);
+            weight *= T::surd(&node.weight);
+        }
+        points.push(point);
+        weights.push(weight);
+    }
+    Ok(Rule {
+        points,
+        covariance_weights: weights.clone(),
+        weights,
+    })
+}

@@ -1,0 +1,213 @@
+//! Cubature rules: points and weights that replace a Gaussian integral by a sum.
+//!
+//! ```text
+//! ∫ g(x) N(x; 0, I) dx  ≈  Σₛ wₛ g(ξₛ)
+//! ```
+//!
+//! After this folder the reader knows every rule that the papers use, where its points come from, and how far it is exact.
+//! A rule is written down once, in exact form, straight from its paper ([`ExactRule`]: coordinates are surds, weights
+//! rationals), proven in that form ([`moment`] for one dimension at a time, [`sphere`] for every dimension at once), and
+//! only then turned into the numbers of a filter ([`Rule`]).
+//!
+//! | rule                                     | points      | degree | file              |
+//! |------------------------------------------|-------------|--------|-------------------|
+//! | third degree (cubature Kalman filter)    | 2n          | 3      | [`third_degree`]  |
+//! | unscented                                | 2n + 1      | 3      | [`unscented`]     |
+//! | fifth degree (zhu2016)                   | 2n² + 1     | 5      | [`fifth_degree`]  |
+//! | simplex, fifth degree (liu2017)          | n² + 3n + 3 | 5      | [`simplex`]       |
+//! | Gauss-Hermite product, a reference       | mⁿ          | 2m − 1 | [`gauss_hermite`] |
+//! | weights that the papers print wrongly    |             | none   | [`printed`]       |
+
+pub mod fifth_degree;
+pub mod gauss_hermite;
+pub mod moment;
+mod name;
+pub mod printed;
+pub mod simplex;
+pub mod sphere;
+pub mod third_degree;
+pub mod unscented;
+
+pub use name::RuleName;
+
+use crate::number::{Rational, Roots, Surd};
+use nalgebra::SVector;
+use num_traits::Zero;
+
+/// What a rule cannot be built from.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum InvalidRule {
+    /// A name that no rule has.
+    #[error("there is no rule `{name}`; there are {}", RuleName::NAMES.join(", "))]
+    UnknownName {
+        /// The name that was asked for.
+        name: String,
+    },
+    /// A dimension in which the rule does not exist.
+    #[error("the rule `{rule}` needs a dimension of at least {least}, not {dimension}{reason}")]
+    Dimension {
+        /// The rule.
+        rule: &'static str,
+        /// The least dimension in which it exists.
+        least: usize,
+        /// The dimension that was asked for.
+        dimension: usize,
+        /// Why, with the equation.
+        reason: &'static str,
+    },
+    /// Parameters for which the square of the points' radius is not positive.
+    #[error(
+        "the unscented parameters give n + lambda = {radius_squared}, which must be positive: it is the square of the points' distance from the centre"
+    )]
+    Radius {
+        /// n + λ.
+        radius_squared: String,
+    },
+    /// A number of Gauss-Hermite nodes that has no closed form here.
+    #[error("the Gauss-Hermite rule has 2 to 5 nodes a coordinate here, not {nodes}")]
+    Nodes {
+        /// The number that was asked for.
+        nodes: usize,
+    },
+    /// A rule whose coordinates are not surds.
+    #[error("the coordinates of a Gauss-Hermite product rule are nested roots, not surds")]
+    NestedRoots,
+    /// A rule of one dimension used in another.
+    #[error("a rule of dimension {rule} cannot serve a state of dimension {state}")]
+    StateDimension {
+        /// The rule's dimension.
+        rule: usize,
+        /// The state's dimension.
+        state: usize,
+    },
+}
+
+/// A rule in exact form, for a dimension known at run time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExactRule {
+    /// The number of coordinates of a point, n.
+    pub dimension: usize,
+    /// The points ξₛ, in the order of their paper.
+    pub points: Vec<Vec<Surd>>,
+    /// The weights wₛ, one a point.
+    pub weights: Vec<Rational>,
+    /// The weights used for covariances: those of [`ExactRule::weights`] but for the centre of the (α, β, κ) unscented rule.
+    pub covariance_weights: Vec<Rational>,
+}
+
+impl ExactRule {
+    /// A rule whose covariances have the same weights as its means, given as orbits: points that share a weight.
+    fn from_orbits(dimension: usize, orbits: Vec<(Rational, Vec<Vec<Surd>>)>) -> Self {
+        let mut points = Vec::new();
+        let mut weights = Vec::new();
+        for (weight, orbit) in orbits {
+            weights.extend(vec![weight; orbit.len()]);
+            points.extend(orbit);
+        }
+        Self {
+            dimension,
+            points,
+            covariance_weights: weights.clone(),
+            weights,
+        }
+    }
+
+    /// Sum of the weights: the moment of degree zero, 1 for every rule that is right.
+    pub fn sum_of_weights(&self) -> Rational {
+        self.weights
+            .iter()
+            .cloned()
+            .fold(Rational::new(0, 1), |sum, weight| sum + weight)
+    }
+
+    /// Sum of the weights' absolute values, Σ|w|: the factor by which the rule can amplify an error of g.
+    pub fn sum_of_absolute_weights(&self) -> Rational {
+        self.weights
+            .iter()
+            .fold(Rational::new(0, 1), |sum, weight| sum + weight.abs())
+    }
+
+    /// The number of points whose weight is not zero.
+    pub fn effective_points(&self) -> usize {
+        let zero = Rational::new(0, 1);
+        self.weights
+            .iter()
+            .filter(|weight| **weight != zero)
+            .count()
+    }
+
+    /// The number of different places at which the points stand.
+    pub fn distinct_points(&self) -> usize {
+        (0..self.points.len())
+            .filter(|&s| !self.points[..s].contains(&self.points[s]))
+            .count()
+    }
+}
+
+/// A rule in the numbers of a filter.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rule<T, const N: usize> {
+    /// The points ξₛ.
+    pub points: Vec<SVector<T, N>>,
+    /// The weights of means and cross-covariances, wₛ.
+    pub weights: Vec<T>,
+    /// The weights of covariances.
+    pub covariance_weights: Vec<T>,
+}
+
+impl<T: Roots, const N: usize> Rule<T, N> {
+    /// Turns an exact rule into the numbers of a filter, each coordinate and weight by itself: in doubles each is the one
+    /// nearest to the exact value.
+    ///
+    /// # Errors
+    ///
+    /// [`InvalidRule::StateDimension`] when the rule's dimension is not N.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use immaculate::rule::{Rule, third_degree::third_degree};
+    ///
+    /// let rule = Rule::<f64, 4>::from_exact(&third_degree(4).unwrap()).unwrap();
+    /// assert_eq!(rule.points[0][0], 2.0);
+    /// assert_eq!(rule.weights, vec![0.125; 8]);
+    /// ```
+    pub fn from_exact(exact: &ExactRule) -> Result<Self, InvalidRule> {
+        if exact.dimension != N {
+            return Err(InvalidRule::StateDimension {
+                rule: exact.dimension,
+                state: N,
+            });
+        }
+        let points = exact
+            .points
+            .iter()
+            .map(|point| SVector::from_fn(|row, _| T::surd(&point[row])))
+            .collect();
+        Ok(Self {
+            points,
+            weights: exact.weights.iter().map(T::rational).collect(),
+            covariance_weights: exact.covariance_weights.iter().map(T::rational).collect(),
+        })
+    }
+}
+
+/// `length` times the unit vector along the axis `axis`.
+fn along_axis(dimension: usize, axis: usize, length: &Surd) -> Vec<Surd> {
+    let mut point = vec![Surd::zero(); dimension];
+    point[axis] = length.clone();
+    point
+}
+
+/// The mirror images −ξ of points.
+fn opposite(points: &[Vec<Surd>]) -> Vec<Vec<Surd>> {
+    points
+        .iter()
+        .map(|point| point.iter().map(|coordinate| -coordinate.clone()).collect())
+        .collect()
+}
+
+/// A dimension as a rational.
+fn dimension_as_rational(dimension: usize) -> Rational {
+    Rational::new(i64::try_from(dimension).unwrap_or(i64::MAX), 1)
+}

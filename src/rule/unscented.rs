@@ -1,0 +1,120 @@
+//! The unscented rule: the mean and 2n points on the axes, with one or three parameters.
+//!
+//! After this file the reader knows both parametrisations of the unscented transform and when its centre weight is negative.
+
+use super::{ExactRule, InvalidRule, along_axis, dimension_as_rational, opposite};
+use crate::number::{Field, Rational, Surd};
+
+/// The parameters of the unscented rule.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parameters {
+    /// α, the spread of the points; 1 in the original form.
+    pub alpha: Rational,
+    /// β, what is known of the distribution's fourth moment; 0 in the original form.
+    pub beta: Rational,
+    /// κ; 3 − n matches the fourth moment of one coordinate.
+    pub kappa: Rational,
+}
+
+impl Parameters {
+    /// The original form with one parameter κ: α = 1, β = 0.
+    pub fn of_kappa(kappa: Rational) -> Self {
+        Self {
+            alpha: Rational::new(1, 1),
+            beta: Rational::new(0, 1),
+            kappa,
+        }
+    }
+
+    /// κ = 3 − n, the value of Julier and Uhlmann for Gaussian densities; negative for n > 3.
+    pub fn for_gaussian(n: usize) -> Self {
+        Self::of_kappa(Rational::new(3, 1) - dimension_as_rational(n))
+    }
+
+    /// λ = α²(n + κ) − n.
+    ///
+    /// Source: Wan and van der Merwe, The unscented Kalman filter, 2001.
+    pub fn lambda(&self, n: usize) -> Rational {
+        let n = dimension_as_rational(n);
+        self.alpha.clone() * self.alpha.clone() * (n.clone() + self.kappa.clone()) - n
+    }
+}
+
+/// The unscented rule.
+///
+/// ```text
+/// λ = α²(n + κ) − n
+/// ξ₀ = 0,              w₀ = λ/(n + λ),   for covariances w₀ + 1 − α² + β
+/// ξₛ = ±√(n + λ) eᵢ,   wₛ = 1/(2(n + λ))
+/// ```
+///
+/// Source: Julier and Uhlmann, Unscented filtering and nonlinear estimation, Proceedings of the IEEE 92, 2004 (α = 1, β = 0,
+/// λ = κ); Wan and van der Merwe 2001 for α and β. The rule of the filter IMMUKF that both papers compare themselves with.
+///
+/// With κ = 0 it is the third-degree rule and a centre of weight zero; at n = 3 that is also κ = 3 − n.
+///
+/// # Errors
+///
+/// [`InvalidRule::Dimension`] in dimension zero, [`InvalidRule::Radius`] when n + λ is not positive.
+///
+/// # Examples
+///
+/// ```
+/// use immaculate::rule::unscented::{Parameters, unscented};
+///
+/// let rule = unscented(4, &Parameters::for_gaussian(4)).unwrap();
+/// assert_eq!(rule.weights[0].to_string(), "-1/3");
+/// assert_eq!(rule.points[1][0].to_string(), "√3");
+/// ```
+///
+/// Evidence: `unscented_rule_is_exact_to_degree_three_and_not_four` (exact),
+/// `unscented_rule_has_degree_three_in_every_dimension` (symbolic).
+pub fn unscented(n: usize, parameters: &Parameters) -> Result<ExactRule, InvalidRule> {
+    if n == 0 {
+        return Err(InvalidRule::Dimension {
+            rule: "unscented",
+            least: 1,
+            dimension: n,
+            reason: "",
+        });
+    }
+    let lambda = parameters.lambda(n);
+    let radius_squared = dimension_as_rational(n) + lambda.clone();
+    if !radius_squared.is_positive() {
+        return Err(InvalidRule::Radius {
+            radius_squared: radius_squared.to_string(),
+        });
+    }
+    let radius = Surd::root(&radius_squared);
+    let axes: Vec<_> = (0..n).map(|i| along_axis(n, i, &radius)).collect();
+    let mut points = axes.clone();
+    points.extend(opposite(&axes));
+    let centre = vec![along_axis(n, 0, &Surd::root(&Rational::new(0, 1)))];
+
+    let n_exact = dimension_as_rational(n);
+    let mut rule = ExactRule::from_orbits(
+        n,
+        vec![
+            (centre_weight(&n_exact, &lambda), centre),
+            (axis_weight(&n_exact, &lambda), points),
+        ],
+    );
+    let alpha_squared = parameters.alpha.clone() * parameters.alpha.clone();
+    rule.covariance_weights[0] =
+        rule.weights[0].clone() + Rational::new(1, 1) - alpha_squared + parameters.beta.clone();
+    Ok(rule)
+}
+
+/// The weight of the centre, λ/(n + λ).
+///
+/// Source: as [`unscented`].
+pub fn centre_weight<T: Field>(n: &T, lambda: &T) -> T {
+    lambda.clone() / (n.clone() + lambda.clone())
+}
+
+/// The weight of each of the 2n points on the axes, 1/(2(n + λ)).
+///
+/// Source: as [`unscented`].
+pub fn axis_weight<T: Field>(n: &T, lambda: &T) -> T {
+    T::one() / (T::integer(2) * (n.clone() + lambda.clone()))
+}
