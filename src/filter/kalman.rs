@@ -1,0 +1,50 @@
+//! The Kalman filter's predictions: exact when motion and measurement are linear.
+//!
+//! After this file the reader knows what the cubature filters approximate, and what they must equal on a linear problem.
+
+use crate::number::Field;
+use nalgebra::{SMatrix, SVector};
+
+/// Predicted mean, x̂⁻ = F x̂.
+///
+/// Source: Kalman 1960; liu2017 (1) without noise.
+pub fn predicted_mean<T: Field, const N: usize>(
+    transition: &SMatrix<T, N, N>,
+    mean: &SVector<T, N>,
+) -> SVector<T, N> {
+    transition * mean
+}
+
+/// Predicted covariance, P⁻ = F P Fᵀ + Q.
+///
+/// Source: Kalman 1960.
+///
+/// Evidence: `the_kalman_update_is_conditioning_of_a_gaussian` (symbolic).
+pub fn predicted_covariance<T: Field, const N: usize>(
+    transition: &SMatrix<T, N, N>,
+    covariance: &SMatrix<T, N, N>,
+    noise: &SMatrix<T, N, N>,
+) -> SMatrix<T, N, N> {
+    transition * covariance * transition.transpose() + noise
+}
+
+/// Cross-covariance of state and measurement, C = P⁻ Hᵀ.
+///
+/// Source: Kalman 1960.
+pub fn cross_covariance<T: Field, const N: usize, const M: usize>(
+    covariance: &SMatrix<T, N, N>,
+    h: &SMatrix<T, M, N>,
+) -> SMatrix<T, N, M> {
+    covariance * h.transpose()
+}
+
+/// Innovation covariance, S = H P⁻ Hᵀ + R.
+///
+/// Source: Kalman 1960.
+pub fn innovation_covariance<T: Field, const N: usize, const M: usize>(
+    h: &SMatrix<T, M, N>,
+    covariance: &SMatrix<T, N, N>,
+    noise: &SMatrix<T, M, M>,
+) -> SMatrix<T, M, M> {
+    h * covariance * h.transpose() + noise
+}

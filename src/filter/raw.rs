@@ -1,0 +1,84 @@
+//! Second moments about the origin, as zhu2016 prints them: the same numbers as the centred form, with fewer digits.
+//!
+//! After this file the reader knows the identity that ties both forms, Σ w (X − x̂)(X − x̂)ᵀ = Σ w X Xᵀ − x̂ x̂ᵀ when Σ w = 1 and
+//! x̂ = Σ w X, and its price: at a position of 10⁴ m with a covariance of 1 m² two numbers of 10⁸ m² are subtracted, and eight of
+//! sixteen digits are gone.
+//!
+//! These are *forms*: other algebra for the same exact values. They are right for measurements without angles only, since the
+//! raw moment of an angle depends on where the circle is cut.
+
+use crate::number::Field;
+use nalgebra::{SMatrix, SVector};
+
+/// Predicted covariance about the origin — zhu2016 (24)-(26).
+///
+/// ```text
+/// P⁻ = Σₛ wₛ X*ₛ X*ₛᵀ − x̂⁻ x̂⁻ᵀ + Q
+/// ```
+///
+/// | paper | here      | shape | meaning                            |
+/// |-------|-----------|-------|------------------------------------|
+/// | wₛ    | `weights` | L     | the rule's weights                 |
+/// | X*ₛ   | `points`  | L × N | the propagated points              |
+/// | x̂⁻    | `mean`    | N     | predicted mean                     |
+/// | Q     | `noise`   | N × N | process noise                      |
+///
+/// With Zₛ, ẑ and R in the places of X*ₛ, x̂⁻ and Q this is the innovation covariance — zhu2016 (45)-(47).
+///
+/// Errata: (24) lacks the last two terms: as printed it is the raw second moment, about 10⁶ m² at the paper's start, and never
+/// sees the noise. (45) has them. (47) prints its upper limit as n(n − 1)2 for n(n − 1)/2.
+///
+/// Evidence: `raw_and_centred_second_moments_agree` (symbolic),
+/// `printed_predicted_covariance_is_a_raw_second_moment_without_noise`,
+/// `printed_upper_limit_counts_points_that_do_not_exist`, `the_raw_form_loses_the_digits_of_the_squared_position` (property).
+pub fn raw_covariance<T: Field, const N: usize>(
+    weights: &[T],
+    points: &[SVector<T, N>],
+    mean: &SVector<T, N>,
+    noise: &SMatrix<T, N, N>,
+) -> SMatrix<T, N, N> {
+    raw_second_moment(weights, points) - mean * mean.transpose() + noise
+}
+
+/// The sum of weighted squares alone, which zhu2016 (24) prints for the predicted covariance: Σₛ wₛ X*ₛ X*ₛᵀ.
+///
+/// Evidence: `printed_predicted_covariance_is_a_raw_second_moment_without_noise`.
+pub fn raw_second_moment<T: Field, const N: usize>(
+    weights: &[T],
+    points: &[SVector<T, N>],
+) -> SMatrix<T, N, N> {
+    let mut moment = SMatrix::zeros();
+    for (weight, point) in weights.iter().zip(points) {
+        moment += (point * point.transpose()) * weight.clone();
+    }
+    moment
+}
+
+/// Cross-covariance about the origin — zhu2016 (48)-(50).
+///
+/// ```text
+/// P_xz = Σₛ wₛ Xₛ Zₛᵀ − x̂⁻ ẑᵀ
+/// ```
+///
+/// | paper | here         | shape | meaning                                       |
+/// |-------|--------------|-------|-----------------------------------------------|
+/// | wₛ    | `weights`    | L     | the rule's weights                            |
+/// | Xₛ    | `points`     | L × N | the points drawn afresh from the prediction   |
+/// | x̂⁻    | `mean`       | N     | predicted mean                                |
+/// | Zₛ    | `values`     | L × M | the measurements of the points                |
+/// | ẑ     | `value_mean` | M     | predicted measurement                         |
+///
+/// Evidence: `raw_and_centred_second_moments_agree` (symbolic).
+pub fn raw_cross_covariance<T: Field, const N: usize, const M: usize>(
+    weights: &[T],
+    points: &[SVector<T, N>],
+    mean: &SVector<T, N>,
+    values: &[SVector<T, M>],
+    value_mean: &SVector<T, M>,
+) -> SMatrix<T, N, M> {
+    let mut moment = SMatrix::zeros();
+    for ((weight, point), value) in weights.iter().zip(points).zip(values) {
+        moment += (point * value.transpose()) * weight.clone();
+    }
+    moment - mean * value_mean.transpose()
+}

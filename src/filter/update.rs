@@ -1,0 +1,76 @@
+//! Gain, updated mean and updated covariance, for every filter.
+//!
+//! After this file the reader knows how a residual corrects a prediction once ẑ, S and C are there, wherever they came from.
+
+use crate::matrix::{Ldl, solve};
+use crate::number::Field;
+use nalgebra::{SMatrix, SVector};
+
+/// Gain — zhu2016 (51), liu2017 (20).
+///
+/// ```text
+/// W = C S⁻¹
+/// ```
+///
+/// | paper       | here                    | shape | meaning                                                     |
+/// |-------------|-------------------------|-------|-------------------------------------------------------------|
+/// | P_xz        | `cross_covariance`      | N × M | covariance of state and measurement                          |
+/// | P_zz        | `innovation_covariance` | M × M | as L D Lᵀ, [`ldl`](crate::matrix::ldl)                       |
+/// | W, K        | the result              | N × M | units of the state over units of the measurement             |
+///
+/// Why: of all linear corrections x̂⁻ + W ν this one leaves the least covariance. It is solved from S Wᵀ = Cᵀ; no inverse is formed.
+///
+/// Evidence: `the_kalman_update_is_conditioning_of_a_gaussian` (symbolic).
+pub fn gain<T: Field, const N: usize, const M: usize>(
+    cross_covariance: &SMatrix<T, N, M>,
+    innovation_covariance: &Ldl<T, M>,
+) -> SMatrix<T, N, M> {
+    solve(innovation_covariance, &cross_covariance.transpose()).transpose()
+}
+
+/// Updated mean — zhu2016 (52), liu2017 (20).
+///
+/// ```text
+/// x̂ = x̂⁻ + W ν,   ν = z − ẑ
+/// ```
+///
+/// | paper | here         | shape | meaning                        |
+/// |-------|--------------|-------|--------------------------------|
+/// | x̂⁻    | `mean`       | N     | predicted mean                 |
+/// | W     | `gain`       | N × M | [`gain`]                       |
+/// | z − ẑ | `innovation` | M     | the residual, angles wrapped   |
+///
+/// Why: the conditional mean of a joint Gaussian.
+///
+/// Evidence: `the_kalman_update_is_conditioning_of_a_gaussian` (symbolic).
+pub fn updated_mean<T: Field, const N: usize, const M: usize>(
+    mean: &SVector<T, N>,
+    gain: &SMatrix<T, N, M>,
+    innovation: &SVector<T, M>,
+) -> SVector<T, N> {
+    mean + gain * innovation
+}
+
+/// Updated covariance — zhu2016 (53), liu2017 (20).
+///
+/// ```text
+/// P = P⁻ − W S Wᵀ
+/// ```
+///
+/// | paper | here                    | shape | meaning                |
+/// |-------|-------------------------|-------|------------------------|
+/// | P⁻    | `covariance`            | N × N | predicted covariance   |
+/// | W     | `gain`                  | N × M | [`gain`]               |
+/// | P_zz  | `innovation_covariance` | M × M | innovation covariance  |
+///
+/// Why: the conditional covariance of a joint Gaussian. Nothing is symmetrised: W S Wᵀ is symmetric up to rounding, and what
+/// rounding leaves is seen by nobody, since factorisations read the lower triangle only.
+///
+/// Evidence: `the_kalman_update_is_conditioning_of_a_gaussian` (symbolic).
+pub fn updated_covariance<T: Field, const N: usize, const M: usize>(
+    covariance: &SMatrix<T, N, N>,
+    gain: &SMatrix<T, N, M>,
+    innovation_covariance: &SMatrix<T, M, M>,
+) -> SMatrix<T, N, N> {
+    covariance - gain * innovation_covariance * gain.transpose()
+}

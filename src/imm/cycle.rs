@@ -1,0 +1,338 @@
+//! The wiring: runs a table of equations in the papers' order, for every table the same.
+//!
+//! After this file the reader knows the cycle: what is computed before what, what happens without a detection, and how a step that
+//! cannot be computed is reported.
+
+use super::{Equations, Initial, InvalidProblem, Problem, Step};
+use crate::matrix::{NotPositiveDefinite, all_finite, is_finite};
+use crate::model::Measurement;
+use crate::number::Real;
+use nalgebra::SVector;
+
+/// A step that could not be computed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("step {step}, mode `{mode}`, {equation}: {cause}")]
+pub struct Failure {
+    /// The step, counted from 1.
+    pub step: usize,
+    /// The name of the mode, or "all".
+    pub mode: String,
+    /// The equation that had no answer.
+    pub equation: &'static str,
+    /// Why.
+    pub cause: Cause,
+}
+
+/// Why a step could not be computed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Cause {
+    /// A covariance stopped being positive definite.
+    #[error("the {what} {pivot}")]
+    NotPositiveDefinite {
+        /// Which covariance.
+        what: &'static str,
+        /// The pivot.
+        pivot: NotPositiveDefinite,
+    },
+    /// The measurement has an entry that is not finite.
+    #[error("the measurement has an entry that is not finite")]
+    MeasurementNotFinite,
+    /// A bearing outside two turns of zero.
+    #[error("the measured bearing {bearing} is outside ±2π: is it in degrees?")]
+    BearingOutOfRange {
+        /// The bearing.
+        bearing: String,
+    },
+    /// The likelihood of the measurement is beyond the number system.
+    #[error("the log-likelihood of the measurement under all modes together is not finite")]
+    NoEvidence,
+}
+
+/// The filter: a problem, a table of equations, and the step before and now.
+///
+/// # Examples
+///
+/// ```
+/// use immaculate::{gaussian::Gaussian, imm::{Equations, Imm, Initial, Problem}};
+/// use immaculate::model::{Measurement, motion::Mode};
+/// use nalgebra::{matrix, vector};
+///
+/// // A scalar random walk with one mode: the Kalman filter.
+/// let problem = Problem {
+///     modes: vec![Mode { name: "walk".into(), transition: matrix![1.0], noise: matrix![1.0] }],
+///     transition: vec![vec![1.0]],
+///     measurement: Measurement::Linear(matrix![1.0]),
+///     measurement_noise: matrix![2.0],
+///     rule: None,
+/// };
+/// let initial = Initial {
+///     modes: vec![Gaussian { mean: vector![0.0], covariance: matrix![1.0] }],
+///     mode_probabilities: vec![1.0],
+/// };
+/// let mut filter = Imm::new(problem, Equations::kalman(), &initial).unwrap();
+/// let step = filter.step(Some(&vector![4.0])).unwrap();
+/// assert_eq!(step.combined.mean, vector![2.0]); // gain 2 / (2 + 2)
+/// ```
+#[derive(Debug, Clone)]
+pub struct Imm<T, const N: usize, const M: usize> {
+    problem: Problem<T, N, M>,
+    equations: Equations<T, N, M>,
+    previous: Step<T, N, M>,
+    now: Step<T, N, M>,
+}
+
+impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
+    /// A filter at step 0.
+    ///
+    /// # Errors
+    ///
+    /// [`InvalidProblem`] when the problem, the initial estimate or their match with the equations is wrong.
+    pub fn new(
+        problem: Problem<T, N, M>,
+        equations: Equations<T, N, M>,
+        initial: &Initial<T, N>,
+    ) -> Result<Self, InvalidProblem> {
+        problem.check(initial)?;
+        if equations.draws_points != problem.rule.is_some() {
+            return Err(InvalidProblem::Rule {
+                given: problem.rule.is_some(),
+            });
+        }
+        if !equations.draws_points && !matches!(problem.measurement, Measurement::Linear(_)) {
+            return Err(InvalidProblem::NotLinear);
+        }
+        let points = problem.rule.as_ref().map_or(0, |rule| rule.points.len());
+        let mut now = Step::zeros(problem.modes.len(), points);
+        now.updated.clone_from(&initial.modes);
+        now.mode_probabilities
+            .clone_from(&initial.mode_probabilities);
+        now.combined.mean = (equations.combined_mean)(&problem, &now, &now);
+        now.combined.covariance = (equations.combined_covariance)(&problem, &now, &now);
+        Ok(Self {
+            previous: now.clone(),
+            problem,
+            equations,
+            now,
+        })
+    }
+
+    /// The last step that was computed; step 0 is the initial estimate.
+    pub fn current(&self) -> &Step<T, N, M> {
+        &self.now
+    }
+
+    /// The problem that is run.
+    pub fn problem(&self) -> &Problem<T, N, M> {
+        &self.problem
+    }
+
+    /// One step of the cycle, with a measurement or without a detection.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure`] with step, mode and equation when a value cannot be computed; the filter is then still at the step before.
+    pub fn step(&mut self, measurement: Option<&SVector<T, M>>) -> Result<&Step<T, N, M>, Failure> {
+        std::mem::swap(&mut self.previous, &mut self.now);
+        match self.advance(measurement) {
+            Ok(()) => Ok(&self.now),
+            Err(failure) => {
+                std::mem::swap(&mut self.previous, &mut self.now);
+                Err(failure)
+            }
+        }
+    }
+
+    /// Fills in the record `now` from the record `previous`.
+    fn advance(&mut self, measurement: Option<&SVector<T, M>>) -> Result<(), Failure> {
+        self.now.step = self.previous.step + 1;
+        self.now.measurement = measurement.cloned();
+        if let Some(z) = measurement {
+            self.check_measurement(z)?;
+        }
+        self.mix();
+        for j in 0..self.problem.modes.len() {
+            self.predict(j)?;
+        }
+        self.combine_prediction();
+        if measurement.is_some() {
+            for j in 0..self.problem.modes.len() {
+                self.update(j)?;
+            }
+            self.weigh()?;
+        } else {
+            // No detection: nothing is learnt, and the probabilities follow the chain.
+            let now = &mut self.now;
+            now.forget_measured_values();
+            now.updated.clone_from(&now.predicted);
+            now.mode_probabilities
+                .clone_from(&now.predicted_mode_probabilities);
+        }
+        self.combine();
+        Ok(())
+    }
+
+    /// Mode probabilities along the chain, and the estimates mixed accordingly.
+    fn mix(&mut self) {
+        let (e, problem, previous, now) = self.parts();
+        let modes = problem.modes.len();
+        for j in 0..modes {
+            now.predicted_mode_probabilities[j] =
+                (e.predicted_mode_probability)(problem, previous, now, j);
+            for i in 0..modes {
+                now.mixing_probabilities[j][i] =
+                    (e.mixing_probability)(problem, previous, now, j, i);
+            }
+            now.mixed[j].mean = (e.mixed_mean)(problem, previous, now, j);
+            now.mixed[j].covariance = (e.mixed_covariance)(problem, previous, now, j);
+        }
+    }
+
+    /// One mode's prediction, with points if its filter draws them.
+    fn predict(&mut self, j: usize) -> Result<(), Failure> {
+        let (e, problem, previous, now) = self.parts();
+        if e.draws_points {
+            now.mixed_square_roots[j] =
+                (e.mixed_square_root)(problem, previous, now, j).map_err(|pivot| {
+                    failure(problem, now, j, "zhu2016 (1)", "mixed covariance", pivot)
+                })?;
+            for s in 0..now.mixed_points[j].len() {
+                now.mixed_points[j][s] = (e.mixed_point)(problem, previous, now, j, s);
+                now.propagated_points[j][s] = (e.propagated_point)(problem, previous, now, j, s);
+            }
+        }
+        now.predicted[j].mean = (e.predicted_mean)(problem, previous, now, j);
+        now.predicted[j].covariance = (e.predicted_covariance)(problem, previous, now, j);
+        Ok(())
+    }
+
+    /// One mode's update with a measurement, and its likelihood.
+    fn update(&mut self, j: usize) -> Result<(), Failure> {
+        let (e, problem, previous, now) = self.parts();
+        if e.draws_points {
+            now.predicted_square_roots[j] = (e.predicted_square_root)(problem, previous, now, j)
+                .map_err(|pivot| {
+                    failure(
+                        problem,
+                        now,
+                        j,
+                        "zhu2016 (27)",
+                        "predicted covariance",
+                        pivot,
+                    )
+                })?;
+            for s in 0..now.predicted_points[j].len() {
+                now.predicted_points[j][s] = (e.predicted_point)(problem, previous, now, j, s);
+                now.measured_points[j][s] = (e.measured_point)(problem, previous, now, j, s);
+            }
+        }
+        now.predicted_measurements[j] = (e.predicted_measurement)(problem, previous, now, j);
+        now.innovations[j] = (e.innovation)(problem, previous, now, j);
+        now.innovation_covariances[j] = (e.innovation_covariance)(problem, previous, now, j);
+        now.cross_covariances[j] = (e.cross_covariance)(problem, previous, now, j);
+        now.gains[j] = (e.gain)(problem, previous, now, j).map_err(|pivot| {
+            failure(
+                problem,
+                now,
+                j,
+                "zhu2016 (51)",
+                "innovation covariance",
+                pivot,
+            )
+        })?;
+        now.updated[j].mean = (e.updated_mean)(problem, previous, now, j);
+        now.updated[j].covariance = (e.updated_covariance)(problem, previous, now, j);
+        now.log_likelihoods[j] = (e.log_likelihood)(problem, previous, now, j);
+        Ok(())
+    }
+
+    /// The mode probabilities after the measurement.
+    fn weigh(&mut self) -> Result<(), Failure> {
+        let (e, problem, previous, now) = self.parts();
+        now.log_evidence = (e.log_evidence)(problem, previous, now);
+        if !is_finite(&now.log_evidence) {
+            return Err(Failure {
+                step: now.step,
+                mode: "all".into(),
+                equation: "zhu2016 (58)",
+                cause: Cause::NoEvidence,
+            });
+        }
+        for j in 0..problem.modes.len() {
+            now.mode_probabilities[j] = (e.mode_probability)(problem, previous, now, j);
+        }
+        Ok(())
+    }
+
+    /// The estimate before the measurement, for output.
+    fn combine_prediction(&mut self) {
+        let (e, problem, previous, now) = self.parts();
+        now.combined_prediction.mean = (e.combined_prediction_mean)(problem, previous, now);
+        now.combined_prediction.covariance =
+            (e.combined_prediction_covariance)(problem, previous, now);
+    }
+
+    /// The estimate after the measurement, for output.
+    fn combine(&mut self) {
+        let (e, problem, previous, now) = self.parts();
+        now.combined.mean = (e.combined_mean)(problem, previous, now);
+        now.combined.covariance = (e.combined_covariance)(problem, previous, now);
+    }
+
+    /// What every equation is given.
+    fn parts(
+        &mut self,
+    ) -> (
+        &Equations<T, N, M>,
+        &Problem<T, N, M>,
+        &Step<T, N, M>,
+        &mut Step<T, N, M>,
+    ) {
+        (
+            &self.equations,
+            &self.problem,
+            &self.previous,
+            &mut self.now,
+        )
+    }
+
+    /// A measurement is finite, and its bearings are angles in radians.
+    fn check_measurement(&self, z: &SVector<T, M>) -> Result<(), Failure> {
+        let fail = |equation, cause| {
+            Err(Failure {
+                step: self.now.step,
+                mode: "all".into(),
+                equation,
+                cause,
+            })
+        };
+        if !all_finite(z) {
+            return fail("liu2017 (1)", Cause::MeasurementNotFinite);
+        }
+        let two_turns = T::pi() * T::integer(2);
+        for component in (0..M).filter(|&component| self.problem.measurement.is_angle(component)) {
+            let bearing = &z[component];
+            if *bearing > two_turns || *bearing < -two_turns.clone() {
+                let bearing = format!("{bearing:?}");
+                return fail("liu2017 (31)", Cause::BearingOutOfRange { bearing });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A covariance of mode j that is not positive definite.
+fn failure<T, const N: usize, const M: usize>(
+    problem: &Problem<T, N, M>,
+    now: &Step<T, N, M>,
+    j: usize,
+    equation: &'static str,
+    what: &'static str,
+    pivot: NotPositiveDefinite,
+) -> Failure {
+    Failure {
+        step: now.step,
+        mode: problem.modes[j].name.clone(),
+        equation,
+        cause: Cause::NotPositiveDefinite { what, pivot },
+    }
+}

@@ -1,0 +1,77 @@
+//! A stand-in for OMTM-IMM, the fifth system of zhu2016's comparison.
+//!
+//! After this file the reader knows what is run in that column, and that it is **not** the published filter. The equations of the
+//! "optimal mode transition matrix" IMM (Zhou, Cai, Sun and Shen, 2014) could not be obtained. Its abstract fixes three things: the
+//! transition matrix is replaced by linear-minimum-variance weights, these come from the estimates' covariances, and they are
+//! diagonal matrices, so that each component of the state is weighted by itself. This is the plainest filter of that kind.
+//!
+//! No claim about OMTM-IMM itself follows from it.
+
+use super::Equations;
+use crate::gaussian::Gaussian;
+use crate::number::{Field, Real};
+use nalgebra::{SMatrix, SVector};
+
+/// Linear-minimum-variance weights of uncorrelated estimates, component by component.
+///
+/// ```text
+/// aᵢ⁽ˡ⁾ = (1 / Pⁱₗₗ) / Σₘ (1 / Pᵐₗₗ)
+/// ```
+///
+/// Source: scalar inverse-variance weighting; the cross-covariances of the sub-filters, which the published filter is said to use,
+/// make the weights leave [0, 1] and are left out.
+///
+/// Evidence: `diagonal_weights_sum_to_one_in_each_component` (symbolic).
+pub fn diagonal_weight<T: Field, const N: usize>(
+    estimates: &[Gaussian<T, N>],
+    i: usize,
+) -> SVector<T, N> {
+    SVector::from_fn(|l, _| {
+        let mut sum = T::zero();
+        for estimate in estimates {
+            sum += T::one() / estimate.covariance[(l, l)].clone();
+        }
+        T::one() / estimates[i].covariance[(l, l)].clone() / sum
+    })
+}
+
+/// The mean mixed with diagonal weights, the same for every mode: x̂⁰ = Σᵢ aᵢ ∘ x̂ⁱ.
+///
+/// Source: as [`diagonal_weight`].
+pub fn mixed_mean<T: Field, const N: usize>(estimates: &[Gaussian<T, N>]) -> SVector<T, N> {
+    let mut sum = SVector::zeros();
+    for (i, estimate) in estimates.iter().enumerate() {
+        sum += diagonal_weight(estimates, i).component_mul(&estimate.mean);
+    }
+    sum
+}
+
+/// The covariance mixed with diagonal weights: P⁰ = Σᵢ Aᵢ^½ [Pⁱ + (x̂ⁱ − x̂⁰)(x̂ⁱ − x̂⁰)ᵀ] Aᵢ^½, with Aᵢ = diag(aᵢ).
+///
+/// Source: the moment matching of zhu2016 (56) with each weight split evenly over both sides, so that the result is positive definite
+/// and equals (56) when the components of a weight agree.
+pub fn mixed_covariance<T: Real, const N: usize>(
+    estimates: &[Gaussian<T, N>],
+    mean: &SVector<T, N>,
+) -> SMatrix<T, N, N> {
+    let mut sum = SMatrix::<T, N, N>::zeros();
+    for (i, estimate) in estimates.iter().enumerate() {
+        let root = diagonal_weight(estimates, i).map(|weight| weight.sqrt());
+        let deviation = &estimate.mean - mean;
+        let moment = &estimate.covariance + &deviation * deviation.transpose();
+        sum += moment.component_mul(&(&root * root.transpose()));
+    }
+    sum
+}
+
+/// The table of the stand-in: Kalman filters whose inputs are mixed with diagonal weights, and the mode probabilities of
+/// zhu2016 (58) for the output.
+pub fn equations<T: Real, const N: usize, const M: usize>() -> Equations<T, N, M> {
+    Equations {
+        mixed_mean: |_, previous, _, _| mixed_mean(&previous.updated),
+        mixed_covariance: |_, previous, now, j| {
+            mixed_covariance(&previous.updated, &now.mixed[j].mean)
+        },
+        ..Equations::kalman()
+    }
+}

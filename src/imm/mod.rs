@@ -1,0 +1,34 @@
+//! The interacting multiple model filter: several filters that exchange what they know before every step.
+//!
+//! After this folder the reader knows the whole cycle, in the order in which it is evaluated:
+//!
+//! ```text
+//! predicted mode probabilities   cⱼ = Σᵢ pᵢⱼ μᵢ                        [probability]
+//! mixing probabilities           μᵢ∣ⱼ = pᵢⱼ μᵢ / cⱼ                    [probability]
+//! mixed estimates                moments of the mixture                [crate::gaussian]
+//! predicted, then updated        one filter a mode                     [crate::filter]
+//! log-likelihoods                ln N(ν; 0, S)                         [crate::gaussian]
+//! mode probabilities             μⱼ = Lⱼ cⱼ / Σᵢ Lᵢ cᵢ                 [probability]
+//! combined estimate              moments of the mixture                [crate::gaussian]
+//! ```
+//!
+//! - [`probability`]: the equations of the mode probabilities;
+//! - [`problem`]: what a run is given, checked;
+//! - [`record`]: every value of one step, under its name;
+//! - [`equations`]: the table that says which equation gives each value; a variant of the filter exchanges entries of it;
+//! - [`cycle`]: the one wiring that runs a table;
+//! - [`diagonal_mixing`]: a labelled stand-in for the OMTM-IMM that zhu2016 compares itself with;
+//! - [`printed`]: what the papers print wrongly.
+
+pub mod cycle;
+pub mod diagonal_mixing;
+pub mod equations;
+pub mod printed;
+pub mod probability;
+pub mod problem;
+pub mod record;
+
+pub use cycle::{Failure, Imm};
+pub use equations::Equations;
+pub use problem::{Initial, InvalidProblem, Problem};
+pub use record::Step;

@@ -1,0 +1,334 @@
+//! What a run of the filter is given, and the checks that it must pass.
+//!
+//! After this file the reader knows the inputs of the cycle and every way in which they can be wrong. Nothing is repaired: a matrix
+//! that is not quite symmetric or a row that does not quite sum to one is an error that names itself.
+
+use crate::gaussian::Gaussian;
+use crate::matrix::{all_finite, cholesky, is_finite, is_positive_semidefinite, is_symmetric};
+use crate::model::{Measurement, motion::Mode};
+use crate::number::Real;
+use crate::rule::Rule;
+use nalgebra::SMatrix;
+
+/// The inputs of the cycle that do not change from step to step.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Problem<T, const N: usize, const M: usize> {
+    /// The modes, at least one.
+    pub modes: Vec<Mode<T, N>>,
+    /// `transition[i][j]` = P(mode j at k ∣ mode i at k−1); rows sum to one.
+    pub transition: Vec<Vec<T>>,
+    /// What the sensor sees.
+    pub measurement: Measurement<T, N, M>,
+    /// R, M × M, symmetric positive definite, in products of the units of the measurement.
+    pub measurement_noise: SMatrix<T, M, M>,
+    /// The rule of a filter with points; none for the Kalman filter.
+    pub rule: Option<Rule<T, N>>,
+}
+
+/// The estimate at step 0.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Initial<T, const N: usize> {
+    /// One estimate a mode.
+    pub modes: Vec<Gaussian<T, N>>,
+    /// One probability a mode; they sum to one.
+    pub mode_probabilities: Vec<T>,
+}
+
+/// Why a problem cannot be run.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum InvalidProblem {
+    /// A list has the wrong length.
+    #[error("`{field}` has {found} entries where there are {expected} modes ({equation})")]
+    Length {
+        /// The field.
+        field: String,
+        /// Its length.
+        found: usize,
+        /// The number of modes.
+        expected: usize,
+        /// The equation that needs it.
+        equation: &'static str,
+    },
+    /// There are no modes.
+    #[error(
+        "`modes` is empty; the filter needs at least one ({equation})",
+        equation = "zhu2016 (54)"
+    )]
+    NoModes,
+    /// A value is not finite.
+    #[error("`{field}` has an entry that is not finite ({equation})")]
+    NotFinite {
+        /// The field.
+        field: String,
+        /// The equation that needs it.
+        equation: &'static str,
+    },
+    /// A probability is negative.
+    #[error("`{field}` has a negative entry, {value}; it must be a probability ({equation})")]
+    NegativeProbability {
+        /// The field.
+        field: String,
+        /// The entry.
+        value: String,
+        /// The equation that needs it.
+        equation: &'static str,
+    },
+    /// Probabilities do not sum to one.
+    #[error("`{field}` sums to {sum}; it must sum to 1 ({equation})")]
+    NotNormalised {
+        /// The field.
+        field: String,
+        /// Its sum.
+        sum: String,
+        /// The equation that needs it.
+        equation: &'static str,
+    },
+    /// A covariance is not symmetric.
+    #[error("`{field}` is not symmetric ({equation})")]
+    NotSymmetric {
+        /// The field.
+        field: String,
+        /// The equation that needs it.
+        equation: &'static str,
+    },
+    /// A covariance is not positive definite, or a process noise not positive semidefinite.
+    #[error("`{field}` is not positive {kind} ({equation})")]
+    NotPositive {
+        /// The field.
+        field: String,
+        /// "definite" or "semidefinite".
+        kind: &'static str,
+        /// The equation that needs it.
+        equation: &'static str,
+    },
+    /// The Kalman filter was given a measurement that is not linear.
+    #[error(
+        "`measurement` is not linear, and the Kalman filter has no other; use a cubature filter (zhu2016 (42))"
+    )]
+    NotLinear,
+    /// A filter with points was given no rule, or the Kalman filter one.
+    #[error("`rule` is {}, but the filter's equations {} (zhu2016 (2))", if *.given { "given" } else { "missing" }, if *.given { "draw no points" } else { "draw points" })]
+    Rule {
+        /// Whether a rule was given.
+        given: bool,
+    },
+    /// A rule's points and weights differ in number.
+    #[error(
+        "`rule` has {points} points, {weights} weights and {covariance_weights} covariance weights (zhu2016 (21))"
+    )]
+    RuleLengths {
+        /// The number of points.
+        points: usize,
+        /// The number of weights.
+        weights: usize,
+        /// The number of covariance weights.
+        covariance_weights: usize,
+    },
+    /// The position of a polar measurement is not in the state.
+    #[error("`measurement.position` names entry {index} of a state of {dimension} (liu2017 (31))")]
+    Position {
+        /// The entry, counted from 0.
+        index: usize,
+        /// The dimension of the state.
+        dimension: usize,
+    },
+}
+
+impl<T: Real, const N: usize, const M: usize> Problem<T, N, M> {
+    /// Checks everything that the cycle relies on.
+    ///
+    /// # Errors
+    ///
+    /// [`InvalidProblem`] with the first field that is wrong.
+    pub fn check(&self, initial: &Initial<T, N>) -> Result<(), InvalidProblem> {
+        let modes = self.modes.len();
+        if modes == 0 {
+            return Err(InvalidProblem::NoModes);
+        }
+        self.check_transition()?;
+        for mode in &self.modes {
+            let field = format!("modes[{}].F", mode.name);
+            check_finite(&mode.transition, field, "liu2017 (26)")?;
+            check_process_noise(&mode.noise, format!("modes[{}].Q", mode.name))?;
+        }
+        check_covariance(&self.measurement_noise, "R".into(), "liu2017 (19)")?;
+        self.check_measurement()?;
+        self.check_rule()?;
+
+        check_length("initial.modes", initial.modes.len(), modes, "zhu2016 (55)")?;
+        for (estimate, mode) in initial.modes.iter().zip(&self.modes) {
+            let name = &mode.name;
+            let field = format!("initial.modes[{name}].mean");
+            check_finite(&estimate.mean, field, "zhu2016 (55)")?;
+            let field = format!("initial.modes[{name}].covariance");
+            check_covariance(&estimate.covariance, field, "zhu2016 (56)")?;
+        }
+        let probabilities = &initial.mode_probabilities;
+        let field = "initial.mode_probabilities";
+        check_length(field, probabilities.len(), modes, "zhu2016 (54)")?;
+        check_probabilities(probabilities, field, "zhu2016 (54)")
+    }
+
+    fn check_transition(&self) -> Result<(), InvalidProblem> {
+        let (modes, equation) = (self.modes.len(), "zhu2016 (54)");
+        check_length("transition", self.transition.len(), modes, equation)?;
+        for (i, row) in self.transition.iter().enumerate() {
+            let field = format!("transition[{i}]");
+            check_length(&field, row.len(), modes, equation)?;
+            check_probabilities(row, &field, equation)?;
+        }
+        Ok(())
+    }
+
+    fn check_measurement(&self) -> Result<(), InvalidProblem> {
+        match &self.measurement {
+            Measurement::Linear(h) => check_finite(h, "measurement.H".into(), "zhu2016 (62)"),
+            Measurement::Polar {
+                position, sensor, ..
+            } => {
+                if let Some(&index) = position.iter().find(|&&index| index >= N) {
+                    return Err(InvalidProblem::Position {
+                        index,
+                        dimension: N,
+                    });
+                }
+                if sensor.iter().all(is_finite) {
+                    return Ok(());
+                }
+                Err(InvalidProblem::NotFinite {
+                    field: "measurement.sensor".into(),
+                    equation: "liu2017 (31)",
+                })
+            }
+        }
+    }
+
+    fn check_rule(&self) -> Result<(), InvalidProblem> {
+        let Some(rule) = &self.rule else {
+            return Ok(());
+        };
+        let (points, weights) = (rule.points.len(), rule.weights.len());
+        let covariance_weights = rule.covariance_weights.len();
+        if points != weights || points != covariance_weights {
+            return Err(InvalidProblem::RuleLengths {
+                points,
+                weights,
+                covariance_weights,
+            });
+        }
+        Ok(())
+    }
+}
+
+fn check_length(
+    field: &str,
+    found: usize,
+    expected: usize,
+    equation: &'static str,
+) -> Result<(), InvalidProblem> {
+    if found == expected {
+        return Ok(());
+    }
+    Err(InvalidProblem::Length {
+        field: field.to_owned(),
+        found,
+        expected,
+        equation,
+    })
+}
+
+/// Probabilities are finite, not negative and sum to one. The sum may be off by 10⁻¹⁵ an entry: a decimal of 15 digits is, and 1/3
+/// can be written in no better way.
+fn check_probabilities<T: Real>(
+    values: &[T],
+    field: &str,
+    equation: &'static str,
+) -> Result<(), InvalidProblem> {
+    let field = || field.to_owned();
+    let mut sum = T::zero();
+    for value in values {
+        if !is_finite(value) {
+            return Err(InvalidProblem::NotFinite {
+                field: field(),
+                equation,
+            });
+        }
+        if *value < T::zero() {
+            return Err(InvalidProblem::NegativeProbability {
+                field: field(),
+                value: format!("{value:?}"),
+                equation,
+            });
+        }
+        sum += value.clone();
+    }
+    let entries = i64::try_from(values.len()).unwrap_or(i64::MAX);
+    let allowed = T::integer(entries) / T::integer(1_000_000_000_000_000);
+    let excess = sum.clone() - T::one();
+    if excess <= allowed.clone() && excess >= -allowed {
+        return Ok(());
+    }
+    Err(InvalidProblem::NotNormalised {
+        field: field(),
+        sum: format!("{sum:?}"),
+        equation,
+    })
+}
+
+fn check_finite<T: Real, const R: usize, const C: usize>(
+    matrix: &SMatrix<T, R, C>,
+    field: String,
+    equation: &'static str,
+) -> Result<(), InvalidProblem> {
+    if all_finite(matrix) {
+        return Ok(());
+    }
+    Err(InvalidProblem::NotFinite { field, equation })
+}
+
+fn check_symmetric<T: Real, const D: usize>(
+    matrix: &SMatrix<T, D, D>,
+    field: &str,
+    equation: &'static str,
+) -> Result<(), InvalidProblem> {
+    check_finite(matrix, field.to_owned(), equation)?;
+    if is_symmetric(matrix) {
+        return Ok(());
+    }
+    Err(InvalidProblem::NotSymmetric {
+        field: field.to_owned(),
+        equation,
+    })
+}
+
+fn check_covariance<T: Real, const D: usize>(
+    matrix: &SMatrix<T, D, D>,
+    field: String,
+    equation: &'static str,
+) -> Result<(), InvalidProblem> {
+    check_symmetric(matrix, &field, equation)?;
+    if cholesky(matrix).is_ok() {
+        return Ok(());
+    }
+    Err(InvalidProblem::NotPositive {
+        field,
+        kind: "definite",
+        equation,
+    })
+}
+
+fn check_process_noise<T: Real, const D: usize>(
+    matrix: &SMatrix<T, D, D>,
+    field: String,
+) -> Result<(), InvalidProblem> {
+    let equation = "liu2017 (17)";
+    check_symmetric(matrix, &field, equation)?;
+    if is_positive_semidefinite(matrix) {
+        return Ok(());
+    }
+    Err(InvalidProblem::NotPositive {
+        field,
+        kind: "semidefinite",
+        equation,
+    })
+}

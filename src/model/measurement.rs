@@ -1,0 +1,133 @@
+//! What the sensor sees: a linear function of the state, or range and bearing.
+//!
+//! After this file the reader knows both papers' measurements, how residuals are formed and how measurements of cubature points
+//! are averaged when some of their components are angles ([`super::angle`]).
+
+use super::angle::wrap;
+use crate::number::Real;
+use nalgebra::{SMatrix, SVector};
+
+/// A component of a polar measurement.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PolarComponent {
+    /// The distance from the sensor, in metres.
+    Range,
+    /// The bearing, in radians, counter-clockwise from the x-axis.
+    Bearing,
+}
+
+/// The function h of the measurement z = h(x) + v, v ~ N(0, R).
+#[derive(Debug, Clone, PartialEq)]
+pub enum Measurement<T, const N: usize, const M: usize> {
+    /// A linear measurement — zhu2016 (62): h(x) = H x.
+    ///
+    /// Errata: the paper prints Z = H + R, with the matrix added to the noise; H multiplies the state, and R names both the noise
+    /// and its covariance.
+    Linear(SMatrix<T, M, N>),
+    /// A measurement in polar coordinates — liu2017 (31): r = √(x² + y²), θ = tan⁻¹(y/x).
+    ///
+    /// Errata: tan⁻¹(y/x) confuses opposite directions; it is atan2(y, x) here.
+    Polar {
+        /// What each component of z is.
+        components: [PolarComponent; M],
+        /// Which entries of the state are the position (x, y).
+        position: [usize; 2],
+        /// Where the sensor stands, in metres.
+        sensor: [T; 2],
+    },
+}
+
+impl<T: Real, const N: usize, const M: usize> Measurement<T, N, M> {
+    /// The measurement of a state without noise, h(x) — zhu2016 (35)-(41), (62), liu2017 (1), (31).
+    ///
+    /// Evidence: `a_range_bearing_measurement_is_the_polar_form_of_the_position` (property),
+    /// `plain_arctangent_confuses_opposite_quadrants`.
+    pub fn of(&self, state: &SVector<T, N>) -> SVector<T, M> {
+        match self {
+            Self::Linear(h) => h * state,
+            Self::Polar {
+                components,
+                position,
+                sensor,
+            } => {
+                let x = state[position[0]].clone() - sensor[0].clone();
+                let y = state[position[1]].clone() - sensor[1].clone();
+                SVector::from_fn(|row, _| match components[row] {
+                    PolarComponent::Range => (x.clone() * x.clone() + y.clone() * y.clone()).sqrt(),
+                    PolarComponent::Bearing => y.atan2(&x),
+                })
+            }
+        }
+    }
+
+    /// Whether a component is an angle.
+    pub fn is_angle(&self, component: usize) -> bool {
+        match self {
+            Self::Linear(_) => false,
+            Self::Polar { components, .. } => components[component] == PolarComponent::Bearing,
+        }
+    }
+
+    /// The matrix H of a linear measurement; of another the undecided one, so that nothing that needs H has an answer.
+    pub fn matrix(&self) -> SMatrix<T, M, N> {
+        match self {
+            Self::Linear(h) => h.clone(),
+            Self::Polar { .. } => SMatrix::from_fn(|_, _| T::undecided()),
+        }
+    }
+
+    /// The difference of two measurements, its angles wrapped to (−π, π].
+    ///
+    /// Source: an angle's difference is an angle; both papers subtract without saying so, and liu2017's target is never near ±π.
+    ///
+    /// Evidence: `mirroring_the_scene_mirrors_the_answer`, `the_answer_does_not_depend_on_where_the_bearing_is_cut` (property).
+    pub fn difference(&self, a: &SVector<T, M>, b: &SVector<T, M>) -> SVector<T, M> {
+        let mut difference = a - b;
+        for component in 0..M {
+            if self.is_angle(component) {
+                difference[component] = wrap(difference[component].clone());
+            }
+        }
+        difference
+    }
+
+    /// The weighted mean of measurements — zhu2016 (42)-(44), liu2017 (19).
+    ///
+    /// ```text
+    /// ẑ = Σₛ wₛ Zₛ,      for an angle:  ẑ = Z_c + Σₛ wₛ wrap(Zₛ − Z_c)
+    /// ```
+    ///
+    /// | paper | here         | shape | meaning                                       |
+    /// |-------|--------------|-------|-----------------------------------------------|
+    /// | wₛ    | `weights`    | L     | the rule's weights                            |
+    /// | Zₛ    | `values`     | L × M | the measurements of the points                |
+    /// | Z_c   | `centre`     | M     | the measurement of the points' centre x̂       |
+    ///
+    /// Why: with Σ w = 1 the two forms are equal when no angle jumps, and only the second is right when one does.
+    ///
+    /// Evidence: `the_answer_does_not_depend_on_where_the_bearing_is_cut` (property).
+    pub fn mean(
+        &self,
+        weights: &[T],
+        values: &[SVector<T, M>],
+        centre: &SVector<T, M>,
+    ) -> SVector<T, M> {
+        let mut mean = SVector::zeros();
+        for (weight, value) in weights.iter().zip(values) {
+            for component in 0..M {
+                mean[component] += weight.clone()
+                    * if self.is_angle(component) {
+                        wrap(value[component].clone() - centre[component].clone())
+                    } else {
+                        value[component].clone()
+                    };
+            }
+        }
+        for component in 0..M {
+            if self.is_angle(component) {
+                mean[component] += centre[component].clone();
+            }
+        }
+        mean
+    }
+}

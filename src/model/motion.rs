@@ -1,0 +1,207 @@
+//! Motion models: constant velocity and coordinated turn, and the noise that integrates along them.
+//!
+//! After this file the reader knows the matrices F and Q of both papers and that they belong together: with white noise of
+//! spectral density q on the acceleration,
+//!
+//! ```text
+//! F = e^{AT},     Q = ∫₀ᵀ e^{Aτ} L q Lᵀ e^{Aᵀτ} dτ
+//! ```
+//!
+//! where A is the generator of the motion and L puts the noise on the velocities. A state is [x, ẋ, y, ẏ].
+
+use crate::number::{Field, Real};
+use nalgebra::{Matrix4, Matrix4x2};
+
+/// A mode of the target: how its state moves and how uncertain that is — liu2017 (1).
+///
+/// ```text
+/// xₖ = F xₖ₋₁ + wₖ₋₁,   wₖ₋₁ ~ N(0, Q)
+/// ```
+///
+/// Why: the papers allow a nonlinear f here and use linear ones only, zhu2016 (61) and liu2017 (25), (28). So does this crate;
+/// the cubature filters push their points through F one by one all the same.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mode<T, const N: usize> {
+    /// The mode's name.
+    pub name: String,
+    /// F, N × N.
+    pub transition: nalgebra::SMatrix<T, N, N>,
+    /// Q, N × N, symmetric positive semidefinite, in products of the units of the state.
+    pub noise: nalgebra::SMatrix<T, N, N>,
+}
+
+/// Transition matrix of constant velocity — liu2017 (25), (26).
+///
+/// ```text
+/// F = diag( [1 T; 0 1], [1 T; 0 1] )
+/// ```
+///
+/// | paper | here       | unit | meaning              |
+/// |-------|------------|------|----------------------|
+/// | T     | `interval` | s    | the sampling interval |
+///
+/// Why: e^{AT} with A = [0 1; 0 0] per axis, which is nilpotent: I + AT.
+///
+/// Errata: zhu2016 uses this model as its first and never prints it.
+///
+/// Evidence: `motion_composes_over_time` (symbolic), `a_turn_of_rate_zero_is_constant_velocity` (exact).
+#[rustfmt::skip]
+pub fn constant_velocity<T: Field>(interval: &T) -> Matrix4<T> {
+    let (o, l, t) = (T::zero, T::one, || interval.clone());
+    Matrix4::new(
+        l(), t(), o(), o(), //
+        o(), l(), o(), o(), //
+        o(), o(), l(), t(), //
+        o(), o(), o(), l(),
+    )
+}
+
+/// Transition matrix of a coordinated turn — zhu2016 (61), liu2017 (28), (29).
+///
+/// ```text
+///     ⎡ 1   sin ωT / ω         0   (cos ωT − 1)/ω ⎤
+/// F = ⎢ 0   cos ωT             0   −sin ωT        ⎥
+///     ⎢ 0   (1 − cos ωT)/ω     1   sin ωT / ω     ⎥
+///     ⎣ 0   sin ωT             0   cos ωT         ⎦
+/// ```
+///
+/// | paper | here        | unit  | meaning                              |
+/// |-------|-------------|-------|--------------------------------------|
+/// | ω     | `turn_rate` | rad/s | rate of turn, positive to the left   |
+/// | T     | `interval`  | s     | the sampling interval                |
+///
+/// Why: the velocity turns with rate ω, and the position is its integral. At ω = 0 the quotients are replaced by their limits, T
+/// and 0: constant velocity. 1 − cos ωT is evaluated as 2 sin²(ωT/2), the same number without its cancellation.
+///
+/// Errata: both papers print turn rates of ±3° without "per second", and in degrees.
+///
+/// Evidence: `motion_composes_over_time` (symbolic), `a_turn_of_rate_zero_is_constant_velocity` (exact),
+/// `a_slow_turn_tends_to_constant_velocity` (property).
+pub fn coordinated_turn<T: Real>(turn_rate: &T, interval: &T) -> Matrix4<T> {
+    if *turn_rate == T::zero() {
+        return constant_velocity(interval);
+    }
+    let angle = turn_rate.clone() * interval.clone();
+    let half_sine = (angle.clone() / T::integer(2)).sin();
+    let one_minus_cosine = T::integer(2) * half_sine.clone() * half_sine;
+    turn_matrix(turn_rate, &angle.sin(), &angle.cos(), &one_minus_cosine)
+}
+
+/// The matrix of [`coordinated_turn`] from sin ωT, cos ωT and 1 − cos ωT — zhu2016 (61), liu2017 (29).
+///
+/// Evidence: as [`coordinated_turn`].
+#[rustfmt::skip]
+pub fn turn_matrix<T: Field>(
+    turn_rate: &T,
+    sine: &T,
+    cosine: &T,
+    one_minus_cosine: &T,
+) -> Matrix4<T> {
+    let (o, l) = (T::zero, T::one);
+    let (s, c) = (|| sine.clone(), || cosine.clone());
+    let along = || sine.clone() / turn_rate.clone();
+    let across = || one_minus_cosine.clone() / turn_rate.clone();
+    Matrix4::new(
+        l(), along(), o(), -across(), //
+        o(), c(), o(), -s(), //
+        o(), across(), l(), along(), //
+        o(), s(), o(), c(),
+    )
+}
+
+/// Noise covariance of constant velocity under white acceleration noise — liu2017 (27), (30).
+///
+/// ```text
+/// Q = q · diag( [T³/3 T²/2; T²/2 T], [T³/3 T²/2; T²/2 T] )
+/// ```
+///
+/// | paper | here       | unit  | meaning                                  |
+/// |-------|------------|-------|------------------------------------------|
+/// | q     | `density`  | m²/s³ | spectral density of the acceleration     |
+/// | T     | `interval` | s     | the sampling interval                    |
+///
+/// Why: ∫₀ᵀ [τ; 1] q [τ; 1]ᵀ dτ per axis. It has full rank.
+///
+/// liu2017 uses it for the turning modes too, in (30); the integral along a turn is [`turn_noise`], which differs in the terms
+/// that couple the axes, by about ωT/3 of the entry T²/2.
+///
+/// Evidence: `constant_velocity_noise_is_its_integral` (symbolic).
+#[rustfmt::skip]
+pub fn integrated_noise<T: Field>(density: &T, interval: &T) -> Matrix4<T> {
+    let t = || interval.clone();
+    let (o, q) = (T::zero, || density.clone());
+    let position = || q() * t() * t() * t() / T::integer(3);
+    let mixed = || q() * t() * t() / T::integer(2);
+    let velocity = || q() * t();
+    Matrix4::new(
+        position(), mixed(), o(), o(), //
+        mixed(), velocity(), o(), o(), //
+        o(), o(), position(), mixed(), //
+        o(), o(), mixed(), velocity(),
+    )
+}
+
+/// Noise covariance of a coordinated turn under white acceleration noise, from sin ωT and cos ωT.
+///
+/// ```text
+///           ⎡ 2(T − s/ω)/ω²   (1 − c)/ω²      0               (T − s/ω)/ω ⎤
+/// Q = q  ·  ⎢ (1 − c)/ω²      T               −(T − s/ω)/ω    0           ⎥      s = sin ωT, c = cos ωT
+///           ⎢ 0               −(T − s/ω)/ω    2(T − s/ω)/ω²   (1 − c)/ω²  ⎥
+///           ⎣ (T − s/ω)/ω     0               (1 − c)/ω²      T           ⎦
+/// ```
+///
+/// Source: the integral at the head of this file along [`turn_matrix`]; neither paper uses it. As ω → 0 it tends to
+/// [`integrated_noise`].
+///
+/// Evidence: `turn_noise_is_its_integral` (symbolic).
+#[rustfmt::skip]
+pub fn turn_noise<T: Field>(
+    density: &T,
+    turn_rate: &T,
+    interval: &T,
+    sine: &T,
+    cosine: &T,
+) -> Matrix4<T> {
+    let (w, q) = (|| turn_rate.clone(), || density.clone());
+    let lag = || interval.clone() - sine.clone() / w();
+    let position = || q() * T::integer(2) * lag() / (w() * w());
+    let mixed = || q() * (T::one() - cosine.clone()) / (w() * w());
+    let velocity = || q() * interval.clone();
+    let across = || q() * lag() / w();
+    let o = T::zero;
+    Matrix4::new(
+        position(), mixed(), o(), across(), //
+        mixed(), velocity(), -across(), o(), //
+        o(), -across(), position(), mixed(), //
+        across(), o(), mixed(), velocity(),
+    )
+}
+
+/// How a piecewise constant acceleration enters the state: zhu2016's process noise weight matrix G.
+///
+/// ```text
+/// G = [T²/2 0; T 0; 0 T²/2; 0 T]
+/// ```
+///
+/// Source: zhu2016, section 4, not numbered.
+#[rustfmt::skip]
+pub fn acceleration_input<T: Field>(interval: &T) -> Matrix4x2<T> {
+    let t = || interval.clone();
+    let o = T::zero;
+    let half_square = || t() * t() / T::integer(2);
+    Matrix4x2::new(
+        half_square(), o(), //
+        t(), o(), //
+        o(), half_square(), //
+        o(), t(),
+    )
+}
+
+/// Noise covariance of a piecewise constant acceleration of variance `variance` per axis: Q = G q Gᵀ, of rank two.
+///
+/// Source: zhu2016, section 4, not numbered: "process noise Q ~ N(0, q), q = diag(10, 10)", "process noise weight matrix G".
+/// `variance` is in (m/s²)².
+pub fn acceleration_noise<T: Field>(variance: &T, interval: &T) -> Matrix4<T> {
+    let g = acceleration_input(interval);
+    (&g * g.transpose()) * variance.clone()
+}
