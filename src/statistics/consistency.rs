@@ -1,0 +1,82 @@
+//! Is a filter as good as it says? Normalised squared errors and their bounds.
+//!
+//! After this file the reader knows the two tests of a filter's own covariance: against the truth (NEES) and, without one, against the
+//! measurements (NIS).
+//!
+//! A matched filter's error is Gaussian with the covariance that the filter reports, so its square in that metric is χ² with as many
+//! degrees of freedom as it has components. A mean above the bounds says that the filter is over-confident, one below that it is
+//! too careful.
+
+use crate::gaussian::Gaussian;
+use crate::imm::Step;
+use crate::matrix::{ldl, quadratic_form};
+use nalgebra::{SMatrix, SVector};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+/// Normalised estimation error squared: (x − x̂)ᵀ P⁻¹ (x − x̂), without a unit; its expectation is N.
+///
+/// Source: Bar-Shalom, Li and Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001, section 5.4.
+///
+/// # Examples
+///
+/// ```
+/// use immaculate::{gaussian::Gaussian, statistics::consistency::nees};
+/// use nalgebra::{matrix, vector};
+///
+/// let estimate = Gaussian { mean: vector![1.0], covariance: matrix![4.0] };
+/// assert_eq!(nees(&estimate, &vector![5.0]), 4.0);
+/// ```
+pub fn nees<const N: usize>(estimate: &Gaussian<f64, N>, truth: &SVector<f64, N>) -> f64 {
+    quadratic_form(&ldl(&estimate.covariance), &(truth - estimate.mean))
+}
+
+/// Normalised innovation squared of a step with a measurement: ν̄ᵀ S̄⁻¹ ν̄ with the moments of the modes' innovations under the
+/// predicted mode probabilities, without a unit; its expectation is M. `None` without a measurement.
+///
+/// ```text
+/// ν̄ = Σⱼ cⱼ νⱼ,    S̄ = Σⱼ cⱼ [ Sⱼ + (νⱼ − ν̄)(νⱼ − ν̄)ᵀ ]
+/// ```
+///
+/// Source: as [`nees`]; for several modes the moments of the mixture that predicts the measurement.
+pub fn nis<const N: usize, const M: usize>(step: &Step<f64, N, M>) -> Option<f64> {
+    step.measurement?;
+    let probabilities = &step.predicted_mode_probabilities;
+    let mut mean = SVector::<f64, M>::zeros();
+    for (probability, innovation) in probabilities.iter().zip(&step.innovations) {
+        mean += innovation * *probability;
+    }
+    let mut covariance = SMatrix::<f64, M, M>::zeros();
+    for (j, probability) in probabilities.iter().enumerate() {
+        let deviation = step.innovations[j] - mean;
+        let spread = deviation * deviation.transpose();
+        covariance += (step.innovation_covariances[j] + spread) * *probability;
+    }
+    Some(quadratic_form(&ldl(&covariance), &mean))
+}
+
+/// The interval in which the mean of `count` independent χ² variables of `degrees` degrees of freedom lies with probability
+/// 1 − `false_alarm`, half of the rest on either side.
+///
+/// Source: the sum of independent χ² variables is χ² with the sum of their degrees of freedom.
+///
+/// # Examples
+///
+/// ```
+/// use immaculate::statistics::consistency::bounds;
+///
+/// // One χ² variable of one degree of freedom: the square of a standard Gaussian below 1.96² with probability 0.95 on one side.
+/// let (_, upper) = bounds(1.0, 1, 0.1);
+/// assert!((upper - 1.959964_f64.powi(2)).abs() < 1e-5);
+/// ```
+///
+/// # Panics
+///
+/// When `degrees` or `count` is zero, or `false_alarm` no probability.
+pub fn bounds(degrees: f64, count: usize, false_alarm: f64) -> (f64, f64) {
+    let count = count as f64;
+    let sum = ChiSquared::new(degrees * count).expect("a positive number of degrees of freedom");
+    (
+        sum.inverse_cdf(false_alarm / 2.0) / count,
+        sum.inverse_cdf(1.0 - false_alarm / 2.0) / count,
+    )
+}

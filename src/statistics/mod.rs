@@ -1,0 +1,16 @@
+//! What many runs show: errors, their uncertainty, consistency, and the delay of detection.
+//!
+//! After this folder the reader knows every figure of the reproduced tables: how it is computed from the runs, and how far it would
+//! move if the runs were drawn again.
+//!
+//! - [`rmse`]: root-mean-square errors over runs and over time;
+//! - [`estimate`]: a figure with its standard error, and paired differences of two figures;
+//! - [`consistency`]: normalised squared errors and their χ² bounds;
+//! - [`delay`]: how long a change of motion goes unnoticed.
+
+pub mod consistency;
+pub mod delay;
+pub mod estimate;
+pub mod rmse;
+
+pub use estimate::Estimate;
