@@ -11,13 +11,16 @@
 //!
 //! Nothing else may be called in an equation: neither the methods of the standard library (`f64::exp`, `f64::powi`,
 //! `f64::mul_add`, …) nor the decompositions and norms of nalgebra. The sign and the payload of a NaN are the one
-//! thing that may differ between platforms, and no equation looks at them. (Processors that only have the x87 unit, which
-//! rounds twice, are not supported.)
+//! thing that may differ between platforms, and no equation looks at them. (Processors that only have the x87 unit,
+//! which rounds twice, are not supported.)
 //!
 //! A double has its own way to say that an operation has no answer: NaN, which is unequal to itself as
 //! [`Field::undecided`] demands. Division of a non-zero number by zero is an infinity, as IEEE 754 has it.
 
 use super::{Field, Rational, Real, Roots, Surd};
+
+/// Up to here, 2⁵³, every integer is a double.
+const LARGEST_EXACT_INTEGER: u64 = 1 << 53;
 
 impl Field for f64 {
     fn rational(value: &Rational) -> Self {
@@ -28,10 +31,22 @@ impl Field for f64 {
         f64::NAN
     }
 
-    /// The nearest double, by the conversion of IEEE 754: equations ask for small integers at every step, and the way over
-    /// [`Rational`] would cost more than the equation.
+    /// The nearest double, by the conversion of IEEE 754: equations ask for small integers at every step, and the way
+    /// over [`Rational`] would cost more than the equation.
     fn integer(value: i64) -> Self {
         value as f64
+    }
+
+    /// The nearest double. Where both integers are doubles themselves it is their quotient, which IEEE 754 rounds
+    /// correctly; that is the short way, for the same reason.
+    fn ratio(numerator: i64, denominator: i64) -> Self {
+        let is_double = |value: i64| value.unsigned_abs() <= LARGEST_EXACT_INTEGER;
+        if denominator != 0 && is_double(numerator) && is_double(denominator) {
+            // 0/−1 is −0.0 in IEEE 754; adding 0.0 makes it the 0.0 that it is on the long way.
+            Self::integer(numerator) / Self::integer(denominator) + 0.0
+        } else {
+            Self::rational(&Rational::new(numerator, denominator))
+        }
     }
 }
 

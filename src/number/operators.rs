@@ -55,6 +55,20 @@ macro_rules! binary_operator {
             }
         }
 
+        impl std::ops::$operator<&$number> for $number {
+            type Output = $number;
+            fn $function(self, other: &$number) -> $number {
+                self.$meaning(other)
+            }
+        }
+
+        impl std::ops::$operator<$number> for &$number {
+            type Output = $number;
+            fn $function(self, other: $number) -> $number {
+                self.$meaning(&other)
+            }
+        }
+
         impl std::ops::$in_place for $number {
             fn $in_place_function(&mut self, other: $number) {
                 *self = self.$meaning(&other);

@@ -1,8 +1,9 @@
 //! Polynomials in named unknowns, with surds as coefficients.
 //!
-//! They are the numerators and denominators of [`RationalFunction`](super::RationalFunction), the number system in which
-//! an identity is proven for all values of its unknowns at once. A polynomial is kept as a map from monomials to non-zero
-//! coefficients, and that form is unique: two polynomials are equal, as functions too, exactly if their maps are.
+//! They are the numerators and denominators of [`RationalFunction`](super::RationalFunction), the number system in
+//! which an identity is proven for all values of its unknowns at once. A polynomial is kept as a map from monomials to
+//! non-zero coefficients, and that form is unique: two polynomials are equal, as functions too, exactly if their maps
+//! are.
 
 use super::operators::ring_operators;
 use super::surd::sum_text;
@@ -56,6 +57,11 @@ impl Polynomial {
         Self { terms: None }
     }
 
+    /// Whether the polynomial has an answer at all.
+    pub fn is_decided(&self) -> bool {
+        self.terms.is_some()
+    }
+
     /// The value of a polynomial without unknowns; `None` if there are any, or if it is undecided.
     pub fn as_constant(&self) -> Option<Surd> {
         let terms = self.terms.as_ref()?;
@@ -76,8 +82,8 @@ impl Polynomial {
         Some(self.substitute(&assignments)).filter(Surd::is_decided)
     }
 
-    /// The value, in any number system with roots, where the unknowns have the given values; undecided if one of them is
-    /// not given.
+    /// The value, in any number system with roots, where the unknowns have the given values; undecided if one of them
+    /// is not given.
     pub fn substitute<T: Roots>(&self, assignments: &[(&str, T)]) -> T {
         let Some(terms) = &self.terms else {
             return T::undecided();
@@ -137,7 +143,14 @@ impl Polynomial {
 
     /// The polynomial with the other sign.
     fn negative(&self) -> Self {
-        self.times(&Self::constant(&Surd::integer(-1)))
+        let negated = |terms: &Terms| {
+            let term =
+                |(monomial, coefficient): (&Monomial, &Surd)| (monomial.clone(), -coefficient);
+            terms.iter().map(term).collect()
+        };
+        Self {
+            terms: self.terms.as_ref().map(negated),
+        }
     }
 
     /// A function of two polynomials; undecided if either is, or if the function has no answer.
@@ -147,11 +160,6 @@ impl Polynomial {
             _ => None,
         };
         Self { terms }
-    }
-
-    /// Whether the polynomial has an answer at all.
-    pub(super) fn is_decided(&self) -> bool {
-        self.terms.is_some()
     }
 
     /// The coefficient of the last monomial in the order of the map; `None` for zero and undecided.

@@ -1,6 +1,11 @@
-//! The terms of a surd, and their arithmetic.
+//! The terms of a surd and their arithmetic: what is known about square roots, in four short algorithms.
 //!
-//! The terms are a map from square-free radicands to non-zero rational coefficients.
+//! - [`product`]: √a · √b = g · √(ab/g²) with g = gcd(a, b).
+//! - [`quotient`]: a denominator becomes rational when it is multiplied by its conjugates.
+//! - [`bracket`]: rationals below and above, as near as asked, from integer square roots.
+//! - [`root_terms`]: √(p/q) in canonical form, by trial division.
+//!
+//! Everything is exact; `None` stands for what has no answer, and becomes the surd that says so.
 
 use num_bigint::BigInt;
 use num_integer::{Integer, Roots};
@@ -11,8 +16,10 @@ use std::collections::BTreeMap;
 /// The terms of a surd: the coefficient of √r for each square-free r. No coefficient is zero.
 pub(super) type Terms = BTreeMap<u64, BigRational>;
 
-/// The divisors that are tried when the square part of a number is sought. What is left below the cube of this limit,
-/// 2⁶⁶, is then known to be square-free or a square, and that is beyond every radicand.
+/// How far divisors are tried when the square part of a number is sought.
+///
+/// A number without a divisor up to here that is below the cube of this limit, 2⁶⁶, has at most two prime factors, so
+/// it is square-free or a square. One that is above counts as too large for a radicand, unless it is a square.
 const LARGEST_TRIAL_DIVISOR: u128 = 1 << 22;
 
 /// The terms of `coefficient · √radicand`: none if the coefficient is zero.
@@ -64,8 +71,8 @@ pub(super) fn product(left: &Terms, right: &Terms) -> Option<Terms> {
 /// The quotient: numerator and denominator are multiplied by conjugates of the denominator until that is rational.
 ///
 /// Let d be a factor as [`factor_to_remove`] finds it, and write the denominator as u + v·√d with no d left in u and v.
-/// Then (u + v·√d)(u − v·√d) = u² − d·v² has no term with d, and is not zero because neither factor is. Each step removes
-/// at least one prime from the radicands of the denominator, so there are finitely many.
+/// Then (u + v·√d)(u − v·√d) = u² − d·v² has no term with d, and is not zero because neither factor is. Each step
+/// removes at least one prime from the radicands of the denominator, so there are finitely many.
 pub(super) fn quotient(numerator: &Terms, denominator: &Terms) -> Option<Terms> {
     let (mut numerator, mut denominator) = (numerator.clone(), denominator.clone());
     while let Some(d) = factor_to_remove(&denominator) {
@@ -81,8 +88,8 @@ pub(super) fn quotient(numerator: &Terms, denominator: &Terms) -> Option<Terms> 
     Some(numerator.iter().map(|(&r, c)| (r, c / divisor)).collect())
 }
 
-/// A factor d > 1 of some radicand such that each radicand is either a multiple of d or has no factor in common with it;
-/// `None` if the number is rational.
+/// A factor d > 1 of some radicand such that each radicand is either a multiple of d or has no factor in common with
+/// it; `None` if the number is rational.
 ///
 /// Such a factor can be treated like a prime, and is found without factoring: starting from a radicand, any common
 /// factor with another radicand that is neither 1 nor all of it is a smaller candidate.
@@ -170,7 +177,7 @@ fn square_part(value: &BigInt) -> Option<(BigInt, u64)> {
     if rest_root * rest_root == rest {
         square_root *= rest_root;
     } else {
-        // A rest beyond 64 bits may still hide a square; as a radicand it is too large in any case.
+        // A rest above 2⁶⁶ may still hide a square; as a radicand it is taken to be too large in any case.
         radicand = radicand.checked_mul(rest)?;
     }
     Some((square_root.into(), u64::try_from(radicand).ok()?))

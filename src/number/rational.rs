@@ -1,8 +1,9 @@
 //! Exact rational numbers: the ground of every proof with no tolerance.
 //!
 //! [`Rational`] is the fraction of two integers of any size, in lowest terms. What it adds to the number it wraps:
-//! division by zero is a value ([`Field::undecided`]) and not a panic, a double goes in exactly ([`Rational::from_f64`])
-//! and comes out as the nearest one ([`Rational::to_f64`]), and a decimal is read exactly ([`Rational::from_decimal`]).
+//! division by zero is a value ([`Field::undecided`]) and not a panic, a double goes in exactly
+//! ([`Rational::from_f64`]) and comes out as the nearest one ([`Rational::to_f64`]), and a decimal is read exactly
+//! ([`Rational::from_decimal`]).
 
 use super::operators::{division_operators, ring_operators};
 use super::{Field, decimal};
@@ -71,6 +72,11 @@ impl Rational {
     /// The number itself; `None` if undecided.
     pub fn value(&self) -> Option<&BigRational> {
         self.value.as_ref()
+    }
+
+    /// Whether the number has an answer at all.
+    pub fn is_decided(&self) -> bool {
+        self.value.is_some()
     }
 
     /// The double nearest to the number, ties to the even one; NaN if undecided.

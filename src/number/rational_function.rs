@@ -1,8 +1,8 @@
 //! Rational functions of named unknowns: the number system in which an identity is proven for all inputs.
 //!
 //! An equation that is evaluated on unknowns gives a fraction of polynomials, and two of these are equal exactly if
-//! a · d = c · b for a/b and c/d. So an identity is proven by running the code of its two sides. No greatest common divisor
-//! is needed for that; a few cheap simplifications keep the polynomials small.
+//! a · d = c · b for a/b and c/d. So an identity is proven by running the code of its two sides. No greatest common
+//! divisor is needed for that; a few cheap simplifications keep the polynomials small.
 
 use super::operators::{division_operators, ring_operators};
 use super::{Field, Polynomial, Rational, Roots, Surd};
@@ -46,9 +46,6 @@ impl RationalFunction {
 
     /// The fraction of two polynomials; undecided if the denominator is zero or either of them is undecided.
     pub fn new(numerator: Polynomial, denominator: Polynomial) -> Self {
-        if !numerator.is_decided() {
-            return Self::undecided();
-        }
         // A zero and an undecided denominator have no leading coefficient.
         let Some(leading) = denominator.leading_coefficient() else {
             return Self::undecided();
@@ -59,13 +56,16 @@ impl RationalFunction {
         if numerator == denominator {
             return Self::one();
         }
-        // Neither step is needed for an exact result; both keep the polynomials small.
+        // Neither of the following steps is needed for an exact result; both keep the polynomials small.
         let (numerator, denominator) = if leading.is_one() {
             (numerator, denominator)
         } else {
             let factor = Polynomial::constant(&(Surd::one() / leading.clone()));
             (&numerator * &factor, &denominator * &factor)
         };
+        if !numerator.is_decided() || !denominator.is_decided() {
+            return Self::undecided();
+        }
         let common = numerator.common_monomial(&denominator);
         if common.is_empty() {
             return Self {
@@ -89,18 +89,25 @@ impl RationalFunction {
         &self.denominator
     }
 
-    /// The exact value where the unknowns have the given values; `None` if one of them is not given, if the denominator is
-    /// zero there, or if the function is undecided.
+    /// The exact value where the unknowns have the given values; `None` if one of them is not given, if the denominator
+    /// is zero there, or if the function is undecided.
+    ///
+    /// A common factor that has been cancelled is gone: `(n · n)/n` has the value 0 at n = 0.
     pub fn evaluate(&self, assignments: &[(&str, Rational)]) -> Option<Surd> {
         let numerator = self.numerator.evaluate(assignments)?;
         let denominator = self.denominator.evaluate(assignments)?;
         Some(numerator / denominator).filter(Surd::is_decided)
     }
 
-    /// The value, in any number system with roots, where the unknowns have the given values; undecided if one of them is
-    /// not given.
+    /// The value, in any number system with roots, where the unknowns have the given values; undecided if one of them
+    /// is not given.
     pub fn substitute<T: Roots>(&self, assignments: &[(&str, T)]) -> T {
         self.numerator.substitute(assignments) / self.denominator.substitute(assignments)
+    }
+
+    /// Whether the function has an answer at all.
+    pub fn is_decided(&self) -> bool {
+        self.numerator.is_decided()
     }
 
     /// The sum.
@@ -202,7 +209,7 @@ impl fmt::Display for RationalFunction {
             return formatter.pad(&above);
         }
         let below = self.denominator.to_string();
-        let above = in_brackets_if(above.contains(' '), above);
+        let above = in_brackets_if(above.contains([' ', '/']), above);
         let below = in_brackets_if(below.contains([' ', '·']), below);
         formatter.pad(&format!("{above}/{below}"))
     }

@@ -6,7 +6,7 @@
 //! and a surd with a term is not zero: both are decided without any tolerance.
 //!
 //! What cannot be answered is [`Field::undecided`]: a division by zero, the root of a negative number, and a radicand
-//! that does not fit into 64 bits.
+//! (of the result or on the way to it) that does not fit into 64 bits.
 
 use super::operators::{division_operators, ring_operators};
 use super::radicals::{
@@ -37,7 +37,8 @@ pub struct Surd {
 }
 
 impl Surd {
-    /// The square root of a rational; undecided if it is negative (or undecided itself), or if its radicand is too large.
+    /// The square root of a rational; undecided if it is negative (or undecided itself), or if its radicand is too
+    /// large.
     ///
     /// The root of a square is found whatever its size. For any other p/q in lowest terms, p and q must fit into
     /// 128 bits, and the square-free part of their product into 64.
@@ -45,6 +46,11 @@ impl Surd {
         Self {
             terms: value.value().and_then(root_terms),
         }
+    }
+
+    /// Whether the number has an answer at all.
+    pub fn is_decided(&self) -> bool {
+        self.terms.is_some()
     }
 
     /// The number as a rational; `None` if it is irrational or undecided.
@@ -91,8 +97,8 @@ impl Surd {
     /// The result of rounding the number by a rule that is written for rationals and monotone; `None` if undecided.
     ///
     /// An irrational number is bracketed between two rationals, closer and closer, until both round to the same. This
-    /// ends: the result changes only at rational numbers (zero, for the sign; the middle of two doubles, for the nearest
-    /// double), the number is none of them, and so a bracket that is small enough contains none.
+    /// ends: the result changes only at rational numbers (zero, for the sign; the middle of two doubles, for the
+    /// nearest double), the number is none of them, and so a bracket that is small enough contains none.
     fn round<R: PartialEq>(&self, rounding: impl Fn(&BigRational) -> R) -> Option<R> {
         let terms = self.terms.as_ref()?;
         if let Some(rational) = rational_value(terms) {
@@ -156,11 +162,6 @@ impl Surd {
             _ => None,
         };
         Self { terms }
-    }
-
-    /// Whether the number has an answer at all.
-    pub(super) fn is_decided(&self) -> bool {
-        self.terms.is_some()
     }
 
     /// The terms for printing, each with whether it is negative and the text of its magnitude, the rational one last.
