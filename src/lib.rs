@@ -21,4 +21,7 @@ pub mod imm;
 pub mod matrix;
 pub mod model;
 pub mod number;
+pub mod paper;
+pub mod report;
 pub mod rule;
+pub mod statistics;

@@ -72,6 +72,14 @@ pub enum InvalidRule {
     /// A rule whose coordinates are not surds.
     #[error("the coordinates of a Gauss-Hermite product rule are nested roots, not surds")]
     NestedRoots,
+    /// A dimension too large to be listed.
+    #[error("dimension {dimension} is too large to be listed; at most {greatest}")]
+    TooLarge {
+        /// The dimension that was asked for.
+        dimension: usize,
+        /// The greatest that is listed.
+        greatest: usize,
+    },
     /// A rule of one dimension used in another.
     #[error("a rule of dimension {rule} cannot serve a state of dimension {state}")]
     StateDimension {

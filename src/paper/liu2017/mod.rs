@@ -1,0 +1,202 @@
+//! Liu and Wu 2017: the IMM filter with fifth-degree spherical simplex-radial cubature Kalman filters.
+//!
+//! After this folder the reader knows the paper's simulation, in the order of its section 4, with everything that it leaves open, and
+//! what becomes of its claims ([`claims`]).
+//!
+//! The motion is linear, the measurement is range and bearing: only the update differs from a Kalman filter's, and by how much the four
+//! filters can differ from each other is a question of how curved the measurement is over the width of an estimate.
+
+pub mod claims;
+
+use super::result::{Average, Quantity};
+use super::scenario::{Contestant, Motion, Scenario};
+use super::specification::{Choices, InvalidChoice, liu2017 as specification};
+use crate::imm::printed::cubature_with_likelihood_21;
+use crate::imm::{Equations, Problem};
+use crate::matrix::cholesky;
+use crate::model::motion::{Mode, constant_velocity, integrated_noise};
+use crate::model::{Measurement, PolarComponent};
+use crate::number::Rational;
+use crate::rule::RuleName;
+use crate::rule::unscented::Parameters;
+use nalgebra::{Matrix2, Matrix4, Vector2, Vector4};
+
+/// T, s.
+pub const INTERVAL: f64 = 1.0;
+/// The time at which the target starts, s.
+pub const FIRST_SECOND: usize = 1;
+/// The time at which it ends, s.
+pub const LAST_SECOND: usize = 200;
+/// |ω|, rad/s: printed as 3°, taken per second.
+pub const TURN_RATE: f64 = 3.0 * std::f64::consts::PI / 180.0;
+/// The initial x, m.
+pub const INITIAL_X: f64 = 15000.0;
+/// The initial velocity, m/s.
+pub const INITIAL_VELOCITY: [f64; 2] = [-180.0, 200.0];
+/// q of the constant velocity and of the turns, m²/s³.
+pub const NOISE_DENSITY: f64 = 1.0;
+/// σ of the range, m.
+pub const RANGE_DEVIATION: f64 = 40.0;
+/// σ of the bearing, rad.
+pub const BEARING_DEVIATION: f64 = 0.007;
+/// The probabilities of the modes at the start: constant velocity, left turn, right turn.
+pub const INITIAL_PROBABILITIES: [f64; 3] = [0.8, 0.1, 0.1];
+
+/// The transition matrix of the Markov chain — liu2017 (32).
+///
+/// Rows are the modes at k − 1: constant velocity, left turn, right turn.
+pub const TRANSITION: [[f64; 3]; 3] = [
+    [0.95, 0.025, 0.025],
+    [0.025, 0.95, 0.025],
+    [0.025, 0.025, 0.95],
+];
+
+/// The scenario under the given choices.
+///
+/// # Errors
+///
+/// [`InvalidChoice`] for a parameter or an alternative that the paper's scenario does not have.
+pub fn scenario(choices: &Choices) -> Result<Scenario, InvalidChoice> {
+    let specification = specification();
+    specification.check(choices)?;
+    let chosen = |parameter| specification.chosen(choices, parameter);
+
+    let variances = match chosen("initial-covariance")? {
+        "cartesian-1600" => [1600.0, 100.0, 1600.0, 100.0],
+        "zhu2016" => super::zhu2016::INITIAL_VARIANCES,
+        "wide" => [1e6, 1e4, 1e6, 1e4],
+        _ => [1e4, 1e2, 1e4, 1e2],
+    };
+    let y = match chosen("initial-position")? {
+        "100" => 100.0,
+        _ => 1000.0,
+    };
+    let [vx, vy] = INITIAL_VELOCITY;
+    let initial_state = Vector4::new(INITIAL_X, vx, y, vy);
+    let from_first_second = chosen("first-measurement")? == "at-1-s";
+    let shift = match chosen("turn-intervals")? {
+        "from-22-to-71" => 1,
+        _ => 0,
+    };
+    let bearing_deviation = match chosen("bearing-noise")? {
+        "ten-times" => 10.0 * BEARING_DEVIATION,
+        _ => BEARING_DEVIATION,
+    };
+    let unscented = match chosen("unscented")? {
+        "kappa-half" => Parameters::of_kappa(Rational::new(1, 2)),
+        "scaled" => Parameters {
+            alpha: Rational::new(1, 1000),
+            beta: Rational::new(2, 1),
+            kappa: Rational::new(0, 1),
+        },
+        _ => Parameters::for_gaussian(4),
+    };
+    let equations = match chosen("likelihood")? {
+        "printed" => cubature_with_likelihood_21(),
+        _ => Equations::cubature(),
+    };
+    let deviations = Vector2::new(RANGE_DEVIATION, bearing_deviation);
+    let contestant = |name: &str, rule: &RuleName| Contestant {
+        equations,
+        ..Contestant::with_rule(
+            name,
+            problem(&deviations),
+            rule,
+            INITIAL_PROBABILITIES.to_vec(),
+        )
+    };
+    Ok(Scenario {
+        paper: "liu2017",
+        choices: choices.clone(),
+        runs: if chosen("runs")? == "100" { 100 } else { 200 },
+        first_time: (if from_first_second {
+            FIRST_SECOND
+        } else {
+            FIRST_SECOND + 1
+        }) as f64,
+        interval: INTERVAL,
+        turn_rate: TURN_RATE,
+        initial_state: if from_first_second {
+            constant_velocity(&-INTERVAL) * initial_state
+        } else {
+            initial_state
+        },
+        initial_covariance: Matrix4::from_diagonal(&Vector4::from(variances)),
+        draws_initial_estimate: true,
+        schedule: schedule(from_first_second, shift),
+        truth_noise_root: match chosen("truth-noise")? {
+            "as-in-the-filters" => Some(truth_noise_root()),
+            _ => None,
+        },
+        measurement: measurement(),
+        measurement_deviations: deviations,
+        paired: chosen("pairing")? == "paired",
+        average: Average::RootMeanSquare,
+        contestants: vec![
+            contestant("IMMUKF", &RuleName::Unscented(Some(unscented))),
+            contestant("IMMCKF", &RuleName::ThirdDegree),
+            contestant("IMM5thCKF", &RuleName::FifthDegree),
+            contestant("IMM5thSSRCKF", &RuleName::Simplex),
+        ],
+    })
+}
+
+/// The motion that reaches the states at 2 s (or 1 s) to 200 s: "from 21 s to 70 s it turns right", "from 121 s to 170 s it maneuvers
+/// and turns left", or `shift` seconds later.
+fn schedule(from_first_second: bool, shift: usize) -> Vec<Motion> {
+    let first = if from_first_second {
+        FIRST_SECOND
+    } else {
+        FIRST_SECOND + 1
+    };
+    (first..=LAST_SECOND)
+        .map(|t| match t {
+            t if (21 + shift..=70 + shift).contains(&t) => Motion::RightTurn,
+            t if (121 + shift..=170 + shift).contains(&t) => Motion::LeftTurn,
+            _ => Motion::Straight,
+        })
+        .collect()
+}
+
+/// Range and bearing from a radar at the origin.
+fn measurement() -> Measurement<f64, 4, 2> {
+    Measurement::Polar {
+        components: [PolarComponent::Range, PolarComponent::Bearing],
+        position: [0, 2],
+        sensor: [0.0, 0.0],
+    }
+}
+
+/// Three modes with the noise of (27) and (30), and no rule yet.
+fn problem(deviations: &Vector2<f64>) -> Problem<f64, 4, 2> {
+    let mode = |motion: Motion| Mode {
+        name: motion.name().to_owned(),
+        transition: motion.transition(TURN_RATE, INTERVAL),
+        noise: integrated_noise(&NOISE_DENSITY, &INTERVAL),
+    };
+    Problem {
+        modes: [Motion::Straight, Motion::LeftTurn, Motion::RightTurn]
+            .map(mode)
+            .to_vec(),
+        transition: TRANSITION.iter().map(|row| row.to_vec()).collect(),
+        measurement: measurement(),
+        measurement_noise: Matrix2::from_diagonal(
+            &deviations.map(|deviation| deviation * deviation),
+        ),
+        rule: None,
+    }
+}
+
+/// A square root of (27).
+fn truth_noise_root() -> Matrix4<f64> {
+    cholesky(&integrated_noise(&NOISE_DENSITY, &INTERVAL)).expect("(27) has full rank")
+}
+
+/// The quantity of a row of the paper's table 1; none for the rows of table 2.
+pub fn quantity_of_row(name: &str) -> Option<Quantity> {
+    match name {
+        "Position ARMSE" => Some(Quantity::Position),
+        "Velocity ARMSE" => Some(Quantity::Velocity),
+        _ => None,
+    }
+}

@@ -1,0 +1,134 @@
+//! Monte-Carlo runs: on all cores, and the same whatever their number.
+//!
+//! After this file the reader knows where the random numbers come from. Each run has a stream of its own of one named generator,
+//! ChaCha with eight rounds, keyed by the seed; a run's numbers depend on the seed and the run alone. Gaussian numbers are made by
+//! the Box-Muller transform with the portable functions of [`Real`], so that every platform draws the same.
+
+use super::scenario::{Contestant, Draw, Scenario};
+use crate::imm::{Failure, Imm, Initial, Step};
+use crate::number::Real;
+use crate::statistics::consistency::{nees, nis};
+use nalgebra::Vector4;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+use rayon::prelude::*;
+use std::time::{Duration, Instant};
+
+/// A stream of random numbers.
+#[derive(Debug, Clone)]
+pub struct Generator(ChaCha8Rng);
+
+impl Generator {
+    /// The stream `stream` of the seed.
+    pub fn new(seed: u64, stream: u64) -> Self {
+        let mut generator = ChaCha8Rng::seed_from_u64(seed);
+        generator.set_stream(stream);
+        Self(generator)
+    }
+
+    /// A number in (0, 1], uniform over the multiples of 2⁻⁵³.
+    pub fn uniform(&mut self) -> f64 {
+        const SPACING: f64 = 1.0 / (1_u64 << 53) as f64;
+        ((self.0.next_u64() >> 11) + 1) as f64 * SPACING
+    }
+
+    /// A standard Gaussian number: √(−2 ln u) cos 2πv.
+    ///
+    /// Source: Box and Muller 1958.
+    pub fn standard_normal(&mut self) -> f64 {
+        let (u, v) = (self.uniform(), self.uniform());
+        Real::sqrt(&(-2.0 * Real::ln(&u))) * Real::cos(&(2.0 * f64::pi() * v))
+    }
+}
+
+/// Called once for each finished run of the scenario.
+pub type Progress<'a> = &'a (dyn Fn() + Sync);
+
+/// What one contestant did in one run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Run {
+    /// Estimate minus truth, one a step; as many as were computed.
+    pub errors: Vec<Vector4<f64>>,
+    /// Normalised estimation errors squared.
+    pub nees: Vec<f64>,
+    /// Normalised innovations squared.
+    pub nis: Vec<f64>,
+    /// Mode probabilities.
+    pub mode_probabilities: Vec<Vec<f64>>,
+    /// The step that could not be computed, if there was one.
+    pub failure: Option<Failure>,
+    /// Time spent in the filter's steps.
+    pub time: Duration,
+}
+
+/// Runs every contestant on every draw; the result is `[run][contestant]`.
+pub fn run(scenario: &Scenario, runs: usize, seed: u64, progress: Progress) -> Vec<Vec<Run>> {
+    (0..runs)
+        .into_par_iter()
+        .map(|run| {
+            let results = one_run(scenario, run, seed);
+            progress();
+            results
+        })
+        .collect()
+}
+
+/// All contestants on one run's draw, or each on a draw of its own when the scenario is not paired.
+fn one_run(scenario: &Scenario, run: usize, seed: u64) -> Vec<Run> {
+    let draw = |stream: usize| {
+        let stream = u64::try_from(stream).unwrap_or(u64::MAX);
+        scenario.draw(&mut Generator::new(seed, stream))
+    };
+    let count = scenario.contestants.len();
+    if scenario.paired {
+        let shared = draw(run);
+        let contestants = scenario.contestants.iter();
+        return contestants
+            .map(|contestant| track(contestant, &shared))
+            .collect();
+    }
+    // Streams of the contestants are interleaved, so that no two share one.
+    let contestants = scenario.contestants.iter().enumerate();
+    contestants
+        .map(|(index, contestant)| track(contestant, &draw(run * count + index)))
+        .collect()
+}
+
+/// One contestant on one draw, to its end or to the first step that cannot be computed.
+fn track(contestant: &Contestant, draw: &Draw) -> Run {
+    let mut run = Run {
+        errors: Vec::with_capacity(draw.truth.len()),
+        nees: Vec::with_capacity(draw.truth.len()),
+        nis: Vec::with_capacity(draw.truth.len()),
+        mode_probabilities: Vec::with_capacity(draw.truth.len()),
+        failure: None,
+        time: Duration::ZERO,
+    };
+    let initial = Initial {
+        modes: vec![draw.initial.clone(); contestant.problem.modes.len()],
+        mode_probabilities: contestant.initial_probabilities.clone(),
+    };
+    let mut filter = Imm::new(contestant.problem.clone(), contestant.equations, &initial)
+        .expect("the scenarios' problems are part of the program");
+    for (truth, measurement) in draw.truth.iter().zip(&draw.measurements) {
+        let start = Instant::now();
+        let step = filter.step(Some(measurement));
+        run.time += start.elapsed();
+        match step {
+            Ok(step) => record(&mut run, step, truth),
+            Err(failure) => {
+                run.failure = Some(failure);
+                break;
+            }
+        }
+    }
+    run
+}
+
+/// Keeps what the statistics need of a step.
+fn record(run: &mut Run, step: &Step<f64, 4, 2>, truth: &Vector4<f64>) {
+    run.errors.push(step.combined.mean - truth);
+    run.nees.push(nees(&step.combined, truth));
+    run.nis.extend(nis(step));
+    run.mode_probabilities.push(step.mode_probabilities.clone());
+}

@@ -1,0 +1,554 @@
+//! What the runs of a scenario show.
+//!
+//! After this file the reader knows how the figures of a reproduced table come from the runs: [`Comparison`] answers questions about
+//! the raw runs, and [`Reproduction`] is the list of answers that is printed or written as JSON.
+//!
+//! A run in which a step could not be computed is counted and named, and is left out of the error figures of that filter.
+
+use super::monte_carlo::Run;
+use super::scenario::Scenario;
+use super::specification::Choices;
+use crate::statistics::consistency::bounds;
+use crate::statistics::delay::detection_delays;
+use crate::statistics::estimate::{Estimate, mean, paired_difference, root_mean_square};
+use crate::statistics::rmse;
+use nalgebra::Vector4;
+use serde::Serialize;
+
+/// A quantity whose error is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Quantity {
+    /// The position along x, m.
+    X,
+    /// The velocity along x, m/s.
+    VelocityX,
+    /// The position along y, m.
+    Y,
+    /// The velocity along y, m/s.
+    VelocityY,
+    /// The position, m.
+    Position,
+    /// The velocity, m/s.
+    Velocity,
+}
+
+impl Quantity {
+    /// All quantities.
+    pub const ALL: [Self; 6] = [
+        Self::X,
+        Self::VelocityX,
+        Self::Y,
+        Self::VelocityY,
+        Self::Position,
+        Self::Velocity,
+    ];
+
+    /// The quantity's squared error, from the error of the state [x, ẋ, y, ẏ].
+    pub fn squared(self, error: &Vector4<f64>) -> f64 {
+        let square = |i: usize| error[i] * error[i];
+        match self {
+            Self::X => square(0),
+            Self::VelocityX => square(1),
+            Self::Y => square(2),
+            Self::VelocityY => square(3),
+            Self::Position => square(0) + square(2),
+            Self::Velocity => square(1) + square(3),
+        }
+    }
+
+    /// The quantity in words, with its unit.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::X => "x (m)",
+            Self::VelocityX => "x velocity (m/s)",
+            Self::Y => "y (m)",
+            Self::VelocityY => "y velocity (m/s)",
+            Self::Position => "position (m)",
+            Self::Velocity => "velocity (m/s)",
+        }
+    }
+}
+
+/// How errors at single steps become one figure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Average {
+    /// The root of the mean square over steps, liu2017 (34).
+    RootMeanSquare,
+    /// The mean of RMSE(k) over steps.
+    Mean,
+}
+
+/// The raw runs of a scenario, `[run][contestant]`.
+#[derive(Debug, Clone, Copy)]
+pub struct Comparison<'a> {
+    /// The scenario.
+    pub scenario: &'a Scenario,
+    /// The runs.
+    pub runs: &'a [Vec<Run>],
+}
+
+impl Comparison<'_> {
+    /// The position of a contestant.
+    pub fn index(&self, name: &str) -> Option<usize> {
+        let contestants = &self.scenario.contestants;
+        contestants
+            .iter()
+            .position(|contestant| contestant.name == name)
+    }
+
+    /// The runs that all the given contestants completed.
+    fn completed(&self, contestants: &[usize]) -> Vec<&Vec<Run>> {
+        let complete = |run: &&Vec<Run>| contestants.iter().all(|&c| run[c].failure.is_none());
+        self.runs.iter().filter(complete).collect()
+    }
+
+    /// The mean squared error of each run over the steps that are chosen, one number a run; linearised about RMSE(k) when the
+    /// average is the plain mean over steps, so that its root is that mean and its spread is right to first order.
+    fn mean_squares(
+        &self,
+        runs: &[&Vec<Run>],
+        contestant: usize,
+        quantity: Quantity,
+        chosen: &dyn Fn(usize) -> bool,
+    ) -> Vec<f64> {
+        let steps: Vec<usize> = (0..self.scenario.schedule.len())
+            .filter(|k| chosen(*k))
+            .collect();
+        let count = steps.len() as f64;
+        let squared = |run: &Vec<Run>, k: usize| quantity.squared(&run[contestant].errors[k]);
+        match self.scenario.average {
+            Average::RootMeanSquare => {
+                let of_run =
+                    |run: &&Vec<Run>| steps.iter().map(|&k| squared(run, k)).sum::<f64>() / count;
+                runs.iter().map(of_run).collect()
+            }
+            Average::Mean => {
+                let at_step = |k: usize| {
+                    let squares: Vec<f64> = runs.iter().map(|run| squared(run, k)).collect();
+                    rmse::root_mean_square(&squares)
+                };
+                let rmses: Vec<f64> = steps.iter().map(|&k| at_step(k)).collect();
+                let figure = rmses.iter().sum::<f64>() / count;
+                // d(mean of RMSE)/d(square of a run at k) = 1/(2 RMSE(k)): the same as for √s̄ with s = figure · Σ e²/RMSE(k).
+                let of_run = |run: &&Vec<Run>| {
+                    let terms = steps
+                        .iter()
+                        .zip(&rmses)
+                        .map(|(&k, rmse)| squared(run, k) / rmse);
+                    figure * terms.sum::<f64>() / count
+                };
+                runs.iter().map(of_run).collect()
+            }
+        }
+    }
+
+    /// The overall error of a contestant.
+    pub fn error(&self, contestant: usize, quantity: Quantity) -> Estimate {
+        self.error_over(contestant, quantity, &|_| true)
+    }
+
+    /// The error of a contestant over some of the steps, counted from 0.
+    pub fn error_over(
+        &self,
+        contestant: usize,
+        quantity: Quantity,
+        chosen: &dyn Fn(usize) -> bool,
+    ) -> Estimate {
+        let runs = self.completed(&[contestant]);
+        root_mean_square(&self.mean_squares(&runs, contestant, quantity, chosen))
+    }
+
+    /// The error of contestant `a` minus that of contestant `b`, paired run by run.
+    pub fn difference(&self, a: usize, b: usize, quantity: Quantity) -> Estimate {
+        self.difference_over(a, b, quantity, &|_| true)
+    }
+
+    /// As [`Comparison::difference`], over some of the steps, counted from 0.
+    pub fn difference_over(
+        &self,
+        a: usize,
+        b: usize,
+        quantity: Quantity,
+        chosen: &dyn Fn(usize) -> bool,
+    ) -> Estimate {
+        let runs = self.completed(&[a, b]);
+        paired_difference(
+            &self.mean_squares(&runs, a, quantity, chosen),
+            &self.mean_squares(&runs, b, quantity, chosen),
+        )
+    }
+
+    /// RMSE(k) of a contestant at every step.
+    pub fn rmse(&self, contestant: usize, quantity: Quantity) -> Vec<f64> {
+        let runs = self.completed(&[contestant]);
+        let at_step = |k: usize| {
+            let squared = |run: &&Vec<Run>| quantity.squared(&run[contestant].errors[k]);
+            let squares: Vec<f64> = runs.iter().map(squared).collect();
+            rmse::root_mean_square(&squares)
+        };
+        (0..self.scenario.schedule.len()).map(at_step).collect()
+    }
+
+    /// The greatest difference of two contestants' estimates of a state, component by component, over all steps of all runs; they
+    /// must have seen the same draws.
+    pub fn greatest_estimate_difference(&self, a: usize, b: usize) -> Vector4<f64> {
+        let mut greatest = Vector4::zeros();
+        for run in self.completed(&[a, b]) {
+            for (error_a, error_b) in run[a].errors.iter().zip(&run[b].errors) {
+                greatest = greatest.sup(&(error_a - error_b).abs());
+            }
+        }
+        greatest
+    }
+
+    /// The greatest difference of two contestants' mode probabilities over all steps of all runs.
+    pub fn greatest_probability_difference(&self, a: usize, b: usize) -> f64 {
+        let mut greatest: f64 = 0.0;
+        for run in self.completed(&[a, b]) {
+            let steps = run[a]
+                .mode_probabilities
+                .iter()
+                .zip(&run[b].mode_probabilities);
+            for (p, q) in steps.flat_map(|(step_a, step_b)| step_a.iter().zip(step_b)) {
+                greatest = greatest.max((p - q).abs());
+            }
+        }
+        greatest
+    }
+
+    /// The mean of all NEES values, and of all NIS values, of a contestant, each with its standard error from run to run.
+    pub fn consistency(&self, contestant: usize) -> (Estimate, Estimate) {
+        let runs = self.completed(&[contestant]);
+        let mean_of = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+        let nees: Vec<f64> = runs
+            .iter()
+            .map(|run| mean_of(&run[contestant].nees))
+            .collect();
+        let nis: Vec<f64> = runs
+            .iter()
+            .map(|run| mean_of(&run[contestant].nis))
+            .collect();
+        (mean(&nees), mean(&nis))
+    }
+
+    /// The mode of a contestant that models the truth at each step; none when it has no such mode.
+    pub fn true_modes(&self, contestant: usize) -> Option<Vec<usize>> {
+        let modes = &self.scenario.contestants[contestant].problem.modes;
+        let of_motion = |name: &str| modes.iter().position(|mode| mode.name == name);
+        let schedule = self.scenario.schedule.iter();
+        schedule.map(|motion| of_motion(motion.name())).collect()
+    }
+
+    /// The delay of detection of each change of motion, `[change][run]`, in steps; empty for a filter of one mode.
+    pub fn delays(&self, contestant: usize) -> Vec<Vec<Option<usize>>> {
+        let Some(true_modes) = self.true_modes(contestant) else {
+            return Vec::new();
+        };
+        let runs = self.completed(&[contestant]);
+        let of_run =
+            |run: &&Vec<Run>| detection_delays(&true_modes, &run[contestant].mode_probabilities);
+        let by_run: Vec<Vec<Option<usize>>> = runs.iter().map(of_run).collect();
+        let changes = by_run.first().map_or(0, Vec::len);
+        let of_change = |change: usize| by_run.iter().map(|delays| delays[change]).collect();
+        (0..changes).map(of_change).collect()
+    }
+
+    /// The mean over runs of a contestant's mode probabilities, `[step][mode]`.
+    pub fn mean_mode_probabilities(&self, contestant: usize) -> Vec<Vec<f64>> {
+        let runs = self.completed(&[contestant]);
+        let modes = self.scenario.contestants[contestant].problem.modes.len();
+        let at = |k: usize, j: usize| {
+            let of_run = |run: &&Vec<Run>| run[contestant].mode_probabilities[k][j];
+            runs.iter().map(of_run).sum::<f64>() / runs.len() as f64
+        };
+        let steps = 0..self.scenario.schedule.len();
+        steps
+            .map(|k| (0..modes).map(|j| at(k, j)).collect())
+            .collect()
+    }
+}
+
+/// Everything that a reproduction prints.
+#[derive(Debug, Clone, Serialize)]
+pub struct Reproduction {
+    /// The paper's key.
+    pub paper: &'static str,
+    /// The choices that differ from the defaults.
+    pub choices: Choices,
+    /// The number of runs.
+    pub runs: usize,
+    /// The number of steps of a run.
+    pub steps: usize,
+    /// The times of the steps, s.
+    pub times: Vec<f64>,
+    /// The seed of the random numbers.
+    pub seed: u64,
+    /// What the truth does at each step.
+    pub motions: Vec<&'static str>,
+    /// What each filter did.
+    pub filters: Vec<Performance>,
+    /// Paired differences of the filters' overall errors.
+    pub differences: Vec<Difference>,
+}
+
+/// What one filter did.
+#[derive(Debug, Clone, Serialize)]
+pub struct Performance {
+    /// The paper's name for the filter.
+    pub name: String,
+    /// The names of its modes.
+    pub modes: Vec<String>,
+    /// The points of its rule; none for a Kalman filter.
+    pub points: Option<usize>,
+    /// Those with a weight other than zero.
+    pub effective_points: Option<usize>,
+    /// The runs that were computed to their end.
+    pub completed_runs: usize,
+    /// The steps that could not be computed.
+    pub failures: Vec<FailedRun>,
+    /// Overall errors.
+    pub errors: Vec<ErrorFigure>,
+    /// RMSE(k).
+    pub rmse: Vec<ErrorHistory>,
+    /// Mean mode probabilities, `[step][mode]`.
+    pub mode_probabilities: Vec<Vec<f64>>,
+    /// Consistency with the truth: the expectation is 4 for a matched filter.
+    pub nees: Consistency,
+    /// Consistency with the measurements: the expectation is 2 for a matched filter.
+    pub nis: Consistency,
+    /// Delay of detection of each change of motion.
+    pub delays: Vec<Delay>,
+    /// Mean time spent in the filter's steps, microseconds a step. The only figure that differs from run to run.
+    pub microseconds_per_step: f64,
+}
+
+/// A run that ended early.
+#[derive(Debug, Clone, Serialize)]
+pub struct FailedRun {
+    /// The run, counted from 1.
+    pub run: usize,
+    /// Step, mode, equation and cause.
+    pub failure: String,
+}
+
+/// An overall error.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct ErrorFigure {
+    /// Of what.
+    pub quantity: Quantity,
+    /// The root-mean-square error with its standard error.
+    #[serde(flatten)]
+    pub estimate: Estimate,
+}
+
+/// An error over time.
+#[derive(Debug, Clone, Serialize)]
+pub struct ErrorHistory {
+    /// Of what.
+    pub quantity: Quantity,
+    /// RMSE(k), one a step.
+    pub values: Vec<f64>,
+}
+
+/// A normalised squared error against its bounds.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct Consistency {
+    /// Mean over steps and runs, with its standard error from run to run.
+    #[serde(flatten)]
+    pub mean: Estimate,
+    /// The expectation for a matched filter.
+    pub expected: f64,
+    /// The 95 % interval of the mean over runs at one step, for a matched filter.
+    pub bounds: (f64, f64),
+    /// The part of the steps whose mean over runs is inside the interval; about 0.95 for a matched filter.
+    pub inside: f64,
+}
+
+/// A change of motion and how late it was noticed.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct Delay {
+    /// The time of the first step of the new motion, s.
+    pub time: f64,
+    /// The runs in which the true mode became more likely than not before the next change.
+    pub detected: usize,
+    /// Mean delay of these, s.
+    pub mean: f64,
+    /// Greatest delay of these, s.
+    pub greatest: f64,
+}
+
+/// A paired difference.
+#[derive(Debug, Clone, Serialize)]
+pub struct Difference {
+    /// The filter whose error comes first.
+    pub filter: String,
+    /// The filter whose error is subtracted.
+    pub minus: String,
+    /// Of what.
+    pub quantity: Quantity,
+    /// The difference with its standard error.
+    #[serde(flatten)]
+    pub estimate: Estimate,
+}
+
+/// The probability with which a matched filter's mean is outside the bounds of [`Consistency`] at one step.
+pub const FALSE_ALARM: f64 = 0.05;
+
+impl Reproduction {
+    /// All figures of the runs.
+    pub fn new(scenario: &Scenario, runs: usize, seed: u64, results: &[Vec<Run>]) -> Self {
+        let comparison = Comparison {
+            scenario,
+            runs: results,
+        };
+        let contestants = 0..scenario.contestants.len();
+        let mut differences = Vec::new();
+        for a in contestants.clone() {
+            for b in a + 1..scenario.contestants.len() {
+                for quantity in [Quantity::Position, Quantity::Velocity] {
+                    differences.push(Difference {
+                        filter: scenario.contestants[a].name.clone(),
+                        minus: scenario.contestants[b].name.clone(),
+                        quantity,
+                        estimate: comparison.difference(a, b, quantity),
+                    });
+                }
+            }
+        }
+        Self {
+            paper: scenario.paper,
+            choices: scenario.choices.clone(),
+            runs,
+            steps: scenario.schedule.len(),
+            times: (0..scenario.schedule.len())
+                .map(|k| scenario.time(k))
+                .collect(),
+            seed,
+            motions: scenario
+                .schedule
+                .iter()
+                .map(|motion| motion.name())
+                .collect(),
+            filters: contestants.map(|c| performance(&comparison, c)).collect(),
+            differences,
+        }
+    }
+
+    /// The overall error of a filter in a quantity.
+    pub fn error(&self, filter: &str, quantity: Quantity) -> Option<Estimate> {
+        let filter = self
+            .filters
+            .iter()
+            .find(|performance| performance.name == filter)?;
+        let figure = filter
+            .errors
+            .iter()
+            .find(|figure| figure.quantity == quantity)?;
+        Some(figure.estimate)
+    }
+}
+
+fn performance(comparison: &Comparison, c: usize) -> Performance {
+    let contestant = &comparison.scenario.contestants[c];
+    let of_contestant = || comparison.runs.iter().map(|run| &run[c]);
+    let failures = of_contestant()
+        .enumerate()
+        .filter_map(|(run, result)| {
+            result.failure.as_ref().map(|failure| FailedRun {
+                run: run + 1,
+                failure: failure.to_string(),
+            })
+        })
+        .collect::<Vec<_>>();
+    let steps: usize = of_contestant().map(|run| run.errors.len()).sum();
+    let seconds: f64 = of_contestant().map(|run| run.time.as_secs_f64()).sum();
+    let (nees, nis) = comparison.consistency(c);
+    let error = |quantity| ErrorFigure {
+        quantity,
+        estimate: comparison.error(c, quantity),
+    };
+    let history = |quantity| ErrorHistory {
+        quantity,
+        values: comparison.rmse(c, quantity),
+    };
+    Performance {
+        name: contestant.name.clone(),
+        modes: contestant
+            .problem
+            .modes
+            .iter()
+            .map(|mode| mode.name.clone())
+            .collect(),
+        points: contestant.points.map(|(points, _)| points),
+        effective_points: contestant.points.map(|(_, effective)| effective),
+        completed_runs: comparison.runs.len() - failures.len(),
+        failures,
+        errors: Quantity::ALL.into_iter().map(error).collect(),
+        rmse: Quantity::ALL.into_iter().map(history).collect(),
+        mode_probabilities: comparison.mean_mode_probabilities(c),
+        nees: consistency(comparison, c, nees, 4.0, |run| &run.nees),
+        nis: consistency(comparison, c, nis, 2.0, |run| &run.nis),
+        delays: delays(comparison, c),
+        microseconds_per_step: 1e6 * seconds / steps as f64,
+    }
+}
+
+/// The mean of a normalised squared error, and how often its mean over runs is inside the bounds of a matched filter.
+fn consistency(
+    comparison: &Comparison,
+    contestant: usize,
+    mean: Estimate,
+    expected: f64,
+    values: fn(&Run) -> &Vec<f64>,
+) -> Consistency {
+    let runs = comparison.completed(&[contestant]);
+    let steps = comparison.scenario.schedule.len();
+    if runs.is_empty() {
+        return Consistency {
+            mean,
+            expected,
+            bounds: (f64::NAN, f64::NAN),
+            inside: f64::NAN,
+        };
+    }
+    let bounds = bounds(expected, runs.len(), FALSE_ALARM);
+    let mean_at = |k: usize| {
+        runs.iter()
+            .map(|run| values(&run[contestant])[k])
+            .sum::<f64>()
+            / runs.len() as f64
+    };
+    let inside = (0..steps)
+        .filter(|&k| (bounds.0..=bounds.1).contains(&mean_at(k)))
+        .count();
+    Consistency {
+        mean,
+        expected,
+        bounds,
+        inside: inside as f64 / steps as f64,
+    }
+}
+
+fn delays(comparison: &Comparison, contestant: usize) -> Vec<Delay> {
+    let schedule = &comparison.scenario.schedule;
+    let changes = (1..schedule.len()).filter(|&k| schedule[k] != schedule[k - 1]);
+    let delays = comparison.delays(contestant);
+    let interval = comparison.scenario.interval;
+    changes
+        .zip(&delays)
+        .map(|(k, of_runs)| {
+            let detected: Vec<f64> = of_runs
+                .iter()
+                .flatten()
+                .map(|steps| *steps as f64 * interval)
+                .collect();
+            Delay {
+                time: comparison.scenario.time(k),
+                detected: detected.len(),
+                mean: detected.iter().sum::<f64>() / detected.len() as f64,
+                greatest: detected.iter().copied().fold(f64::NAN, f64::max),
+            }
+        })
+        .collect()
+}

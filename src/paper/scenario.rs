@@ -1,0 +1,173 @@
+//! A target that flies straight and turns, a sensor that sees it, and the filters that compete.
+//!
+//! After this file the reader knows everything that both papers' simulations have in common: a schedule of motions, a draw of one
+//! run's truth, measurements and initial estimate, and contestants that all see the same draw.
+
+use super::monte_carlo::Generator;
+use super::result::Average;
+use super::specification::Choices;
+use crate::gaussian::Gaussian;
+use crate::imm::{Equations, Problem};
+use crate::model::Measurement;
+use crate::model::motion::{constant_velocity, coordinated_turn};
+use crate::rule::{Rule, RuleName};
+use nalgebra::{Matrix4, Vector2, Vector4};
+
+/// What the target does in a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Motion {
+    /// Constant velocity.
+    Straight,
+    /// A turn to the left.
+    LeftTurn,
+    /// A turn to the right.
+    RightTurn,
+}
+
+impl Motion {
+    /// The name of the mode that models this motion.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Straight => "constant velocity",
+            Self::LeftTurn => "left turn",
+            Self::RightTurn => "right turn",
+        }
+    }
+
+    /// The transition matrix of this motion, for turns of `turn_rate` rad/s.
+    pub fn transition(self, turn_rate: f64, interval: f64) -> Matrix4<f64> {
+        match self {
+            Self::Straight => constant_velocity(&interval),
+            Self::LeftTurn => coordinated_turn(&turn_rate, &interval),
+            Self::RightTurn => coordinated_turn(&-turn_rate, &interval),
+        }
+    }
+}
+
+/// A filter of the comparison.
+#[derive(Debug, Clone)]
+pub struct Contestant {
+    /// The paper's name for it.
+    pub name: String,
+    /// Its modes, chain, measurement and rule.
+    pub problem: Problem<f64, 4, 2>,
+    /// Its equations.
+    pub equations: Equations<f64, 4, 2>,
+    /// Its probabilities at step 0.
+    pub initial_probabilities: Vec<f64>,
+    /// The number of points of its rule, and of those with a weight other than zero; none for a Kalman filter.
+    pub points: Option<(usize, usize)>,
+}
+
+impl Contestant {
+    /// A filter with points: a problem without a rule, and the rule to use.
+    pub fn with_rule(
+        name: &str,
+        problem: Problem<f64, 4, 2>,
+        rule: &RuleName,
+        initial_probabilities: Vec<f64>,
+    ) -> Self {
+        let exact = rule
+            .exact(4)
+            .expect("the papers' rules exist in four dimensions");
+        let rule = Rule::from_exact(&exact).expect("the rule was made for four dimensions");
+        Self {
+            name: name.to_owned(),
+            problem: Problem {
+                rule: Some(rule),
+                ..problem
+            },
+            equations: Equations::cubature(),
+            initial_probabilities,
+            points: Some((exact.points.len(), exact.effective_points())),
+        }
+    }
+}
+
+/// A paper's scenario with every choice made.
+#[derive(Debug, Clone)]
+pub struct Scenario {
+    /// The paper's key.
+    pub paper: &'static str,
+    /// The choices that differ from the defaults.
+    pub choices: Choices,
+    /// The paper's number of runs.
+    pub runs: usize,
+    /// The time of step 1, s.
+    pub first_time: f64,
+    /// T, s.
+    pub interval: f64,
+    /// |ω| of the true turns, rad/s.
+    pub turn_rate: f64,
+    /// The true state at step 0.
+    pub initial_state: Vector4<f64>,
+    /// P₀ of the filters.
+    pub initial_covariance: Matrix4<f64>,
+    /// Whether the filters start from an estimate drawn from N(x₀, P₀), or from x₀ itself.
+    pub draws_initial_estimate: bool,
+    /// What the target does in steps 1, 2, …
+    pub schedule: Vec<Motion>,
+    /// A square root of the truth's process noise; none for a deterministic trajectory.
+    pub truth_noise_root: Option<Matrix4<f64>>,
+    /// What the sensor sees.
+    pub measurement: Measurement<f64, 4, 2>,
+    /// The standard deviations of the measurement noise.
+    pub measurement_deviations: Vector2<f64>,
+    /// Whether every contestant sees the same noise.
+    pub paired: bool,
+    /// How errors at single steps become the figure of a table.
+    pub average: Average,
+    /// The filters.
+    pub contestants: Vec<Contestant>,
+}
+
+/// One run's truth, measurements and initial estimate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Draw {
+    /// The true states of steps 1, 2, …
+    pub truth: Vec<Vector4<f64>>,
+    /// The measurements of steps 1, 2, …
+    pub measurements: Vec<Vector2<f64>>,
+    /// The estimate at step 0, the same for every mode.
+    pub initial: Gaussian<f64, 4>,
+}
+
+impl Scenario {
+    /// The time of step k + 1, s.
+    pub fn time(&self, k: usize) -> f64 {
+        self.first_time + k as f64 * self.interval
+    }
+
+    /// Draws one run. The numbers are taken in a fixed order: initial estimate, then for each step process noise and measurement noise.
+    pub fn draw(&self, generator: &mut Generator) -> Draw {
+        let mut mean = self.initial_state;
+        if self.draws_initial_estimate {
+            mean += self
+                .initial_covariance
+                .diagonal()
+                .map(|variance| variance.sqrt() * generator.standard_normal());
+        }
+        let mut state = self.initial_state;
+        let mut truth = Vec::with_capacity(self.schedule.len());
+        let mut measurements = Vec::with_capacity(self.schedule.len());
+        for motion in &self.schedule {
+            state = motion.transition(self.turn_rate, self.interval) * state;
+            if let Some(root) = &self.truth_noise_root {
+                state += root * Vector4::from_fn(|_, _| generator.standard_normal());
+            }
+            let noise = self
+                .measurement_deviations
+                .map(|deviation| deviation * generator.standard_normal());
+            truth.push(state);
+            measurements.push(self.measurement.of(&state) + noise);
+        }
+        Draw {
+            truth,
+            measurements,
+            initial: Gaussian {
+                mean,
+                covariance: self.initial_covariance,
+            },
+        }
+    }
+}

@@ -1,0 +1,375 @@
+//! The papers' half of the specification, read from the files in `spec/` that are built into the program.
+//!
+//! After this file the reader knows what a paper's equations, tables, open parameters and claims look like as values, and how a
+//! scenario's choices are named: each open parameter of `spec/<paper>/scenario.toml` has a default and alternatives.
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+/// Everything that `spec/` says about one paper.
+#[derive(Debug, Clone)]
+pub struct Specification {
+    /// Who wrote it, and where.
+    pub paper: Citation,
+    /// The numbered equations, in order.
+    pub equations: Vec<Equation>,
+    /// What the paper prints without a number, or needs and does not print.
+    pub unnumbered: Vec<Equation>,
+    /// The published tables.
+    pub tables: Vec<Table>,
+    /// The open parameters of the scenario.
+    pub parameters: Vec<Parameter>,
+    /// What the paper claims.
+    pub claims: Vec<Claim>,
+}
+
+/// A paper's citation.
+#[derive(Debug, Clone, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Citation {
+    /// The key, `zhu2016`.
+    pub key: String,
+    /// The title.
+    pub title: String,
+    /// The authors.
+    pub authors: Authors,
+    /// Journal, volume, pages.
+    pub venue: String,
+    /// The digital object identifier.
+    pub doi: String,
+}
+
+/// Authors as one string or a list.
+#[derive(Debug, Clone, Deserialize, Serialize)]
+#[serde(untagged)]
+pub enum Authors {
+    /// As one string.
+    One(String),
+    /// As a list.
+    Many(Vec<String>),
+}
+
+/// An equation of a paper.
+#[derive(Debug, Clone, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Equation {
+    /// The printed number.
+    pub number: Option<u32>,
+    /// The name of an equation without a number.
+    pub name: Option<String>,
+    /// The correct form in LaTeX.
+    pub latex: String,
+    /// `as-printed`, `corrected` or `reconstructed`.
+    pub status: String,
+    /// What it says.
+    pub meaning: String,
+    /// What is wrong as printed.
+    pub erratum: Option<Erratum>,
+}
+
+/// What is wrong with an equation as printed.
+#[derive(Debug, Clone, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Erratum {
+    /// The erratum's name.
+    pub id: String,
+    /// The printed form in LaTeX.
+    pub printed: String,
+    /// What is wrong.
+    pub why: String,
+    /// Why it is wrong.
+    pub proof: String,
+    /// `mathematical` or `notational`.
+    pub kind: String,
+    /// The test in which the printed form fails and the corrected one passes.
+    pub test: Option<String>,
+}
+
+/// A published table.
+#[derive(Debug, Clone, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Table {
+    /// Its number.
+    pub number: u32,
+    /// Its caption.
+    pub caption: String,
+    /// The names of its columns.
+    pub columns: Vec<String>,
+    /// Its rows.
+    pub rows: Vec<TableRow>,
+}
+
+/// A row of a published table.
+#[derive(Debug, Clone, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct TableRow {
+    /// The row's name.
+    pub name: String,
+    /// The unit of its values; `1` for a count.
+    pub unit: String,
+    /// One value a column.
+    pub values: Vec<f64>,
+}
+
+/// An open parameter of a scenario.
+#[derive(Debug, Clone, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Parameter {
+    /// Its name.
+    pub name: String,
+    /// What the paper says about it.
+    pub printed: String,
+    /// The alternative that is used when no other is asked for.
+    pub default: String,
+    /// All alternatives, the default among them.
+    #[serde(rename = "alternative")]
+    pub alternatives: Vec<Alternative>,
+}
+
+/// A value of an open parameter.
+#[derive(Debug, Clone, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Alternative {
+    /// Its name.
+    pub name: String,
+    /// What it means, with numbers and units.
+    pub meaning: String,
+}
+
+/// What a paper claims.
+#[derive(Debug, Clone, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Claim {
+    /// Its name.
+    pub id: String,
+    /// The paper's words.
+    pub quote: String,
+    /// Where they stand.
+    #[serde(rename = "where")]
+    pub place: String,
+    /// What is asked precisely.
+    pub question: String,
+    /// What is computed to answer it.
+    pub judged_by: String,
+}
+
+/// A choice that a scenario does not have.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum InvalidChoice {
+    /// Not of the form `parameter=alternative`.
+    #[error("`{text}` is not of the form parameter=alternative")]
+    Form {
+        /// What was given.
+        text: String,
+    },
+    /// No such parameter.
+    #[error("{paper} has no parameter `{name}`; it has {known}")]
+    Parameter {
+        /// The paper.
+        paper: String,
+        /// The name that was asked for.
+        name: String,
+        /// The names that there are.
+        known: String,
+    },
+    /// No such alternative.
+    #[error("the parameter `{parameter}` of {paper} has no alternative `{name}`; it has {known}")]
+    Alternative {
+        /// The paper.
+        paper: String,
+        /// The parameter.
+        parameter: String,
+        /// The name that was asked for.
+        name: String,
+        /// The names that there are.
+        known: String,
+    },
+}
+
+/// One alternative for each parameter that is not left at its default.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+#[serde(transparent)]
+pub struct Choices(BTreeMap<String, String>);
+
+impl Choices {
+    /// The choice of one alternative.
+    pub fn of(parameter: &str, alternative: &str) -> Self {
+        Self::default().with(parameter, alternative)
+    }
+
+    /// These choices and one more.
+    #[must_use]
+    pub fn with(mut self, parameter: &str, alternative: &str) -> Self {
+        self.0.insert(parameter.to_owned(), alternative.to_owned());
+        self
+    }
+
+    /// Choices from texts of the form `parameter=alternative`.
+    ///
+    /// # Errors
+    ///
+    /// [`InvalidChoice::Form`] for a text without `=`.
+    pub fn parse(texts: &[String]) -> Result<Self, InvalidChoice> {
+        let mut choices = Self::default();
+        for text in texts {
+            let Some((parameter, alternative)) = text.split_once('=') else {
+                return Err(InvalidChoice::Form { text: text.clone() });
+            };
+            choices = choices.with(parameter.trim(), alternative.trim());
+        }
+        Ok(choices)
+    }
+
+    /// The choices as `parameter=alternative`, or `as printed` where nothing is chosen.
+    pub fn describe(&self) -> String {
+        if self.0.is_empty() {
+            return "defaults".to_owned();
+        }
+        let choices: Vec<String> = self.0.iter().map(|(p, a)| format!("{p}={a}")).collect();
+        choices.join(", ")
+    }
+
+    /// The names of the parameters that are chosen.
+    pub fn parameters(&self) -> impl Iterator<Item = &str> {
+        self.0.keys().map(String::as_str)
+    }
+}
+
+impl Specification {
+    /// The alternative of a parameter: the chosen one, or the default.
+    ///
+    /// # Errors
+    ///
+    /// [`InvalidChoice`] when the parameter or the chosen alternative does not exist.
+    pub fn chosen<'a>(
+        &'a self,
+        choices: &Choices,
+        parameter: &str,
+    ) -> Result<&'a str, InvalidChoice> {
+        let paper = || self.paper.key.clone();
+        let Some(known) = self.parameters.iter().find(|p| p.name == parameter) else {
+            let names: Vec<&str> = self.parameters.iter().map(|p| p.name.as_str()).collect();
+            return Err(InvalidChoice::Parameter {
+                paper: paper(),
+                name: parameter.to_owned(),
+                known: names.join(", "),
+            });
+        };
+        let name = choices.0.get(parameter).unwrap_or(&known.default);
+        if let Some(alternative) = known.alternatives.iter().find(|a| a.name == *name) {
+            return Ok(&alternative.name);
+        }
+        let names: Vec<&str> = known.alternatives.iter().map(|a| a.name.as_str()).collect();
+        Err(InvalidChoice::Alternative {
+            paper: paper(),
+            parameter: parameter.to_owned(),
+            name: name.clone(),
+            known: names.join(", "),
+        })
+    }
+
+    /// Every choice names a parameter and an alternative of this paper.
+    ///
+    /// # Errors
+    ///
+    /// [`InvalidChoice`] for the first that does not.
+    pub fn check(&self, choices: &Choices) -> Result<(), InvalidChoice> {
+        for parameter in choices.parameters() {
+            self.chosen(choices, parameter)?;
+        }
+        Ok(())
+    }
+
+    /// All choices of one alternative that is not a default, in the order of the file.
+    pub fn single_alternatives(&self) -> Vec<Choices> {
+        let mut all = Vec::new();
+        for parameter in &self.parameters {
+            for alternative in &parameter.alternatives {
+                if alternative.name != parameter.default {
+                    all.push(Choices::of(&parameter.name, &alternative.name));
+                }
+            }
+        }
+        all
+    }
+}
+
+/// The specification of zhu2016.
+pub fn zhu2016() -> &'static Specification {
+    static SPECIFICATION: LazyLock<Specification> = LazyLock::new(|| {
+        parse([
+            include_str!("../../spec/zhu2016/equations.toml"),
+            include_str!("../../spec/zhu2016/tables.toml"),
+            include_str!("../../spec/zhu2016/scenario.toml"),
+            include_str!("../../spec/zhu2016/claims.toml"),
+        ])
+    });
+    &SPECIFICATION
+}
+
+/// The specification of liu2017.
+pub fn liu2017() -> &'static Specification {
+    static SPECIFICATION: LazyLock<Specification> = LazyLock::new(|| {
+        parse([
+            include_str!("../../spec/liu2017/equations.toml"),
+            include_str!("../../spec/liu2017/tables.toml"),
+            include_str!("../../spec/liu2017/scenario.toml"),
+            include_str!("../../spec/liu2017/claims.toml"),
+        ])
+    });
+    &SPECIFICATION
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct EquationsFile {
+    paper: Citation,
+    equation: Vec<Equation>,
+    #[serde(default)]
+    unnumbered: Vec<Equation>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct TablesFile {
+    table: Vec<Table>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ScenarioFile {
+    #[allow(
+        dead_code,
+        reason = "the fixed parameters are constants of the code; the file states them for readers"
+    )]
+    printed: toml::Table,
+    parameter: Vec<Parameter>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ClaimsFile {
+    claim: Vec<Claim>,
+}
+
+/// The four files of a paper. They are part of the program, and a test reads them: a file that cannot be read is a defect of the
+/// program, not of its input.
+fn parse([equations, tables, scenario, claims]: [&str; 4]) -> Specification {
+    let equations: EquationsFile = read(equations);
+    let tables: TablesFile = read(tables);
+    let scenario: ScenarioFile = read(scenario);
+    let claims: ClaimsFile = read(claims);
+    Specification {
+        paper: equations.paper,
+        equations: equations.equation,
+        unnumbered: equations.unnumbered,
+        tables: tables.table,
+        parameters: scenario.parameter,
+        claims: claims.claim,
+    }
+}
+
+fn read<T: serde::de::DeserializeOwned>(text: &str) -> T {
+    toml::from_str(text).expect("the specification's files are part of the program")
+}

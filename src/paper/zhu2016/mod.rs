@@ -1,0 +1,245 @@
+//! Zhu, Wang and Yuan 2016: the IMM filter with fifth-degree cubature Kalman filters.
+//!
+//! After this folder the reader knows the paper's simulation, in the order of its section 4, with everything that it leaves open, and
+//! what becomes of its claims ([`claims`]).
+//!
+//! Motion and measurement are linear here. Any rule that is exact to degree two then *is* the Kalman filter, so that three of the five
+//! columns of the paper's table must be equal; they are not.
+
+pub mod claims;
+
+use super::result::{Average, Quantity};
+use super::scenario::{Contestant, Motion, Scenario};
+use super::specification::{Choices, InvalidChoice, zhu2016 as specification};
+use crate::imm::{Equations, Problem, diagonal_mixing};
+use crate::model::motion::{Mode, acceleration_input, acceleration_noise};
+use crate::model::{Measurement, PolarComponent};
+use crate::number::Rational;
+use crate::rule::RuleName;
+use crate::rule::unscented::Parameters;
+use nalgebra::{Matrix4, Vector2, Vector4, matrix};
+
+/// T, s.
+pub const INTERVAL: f64 = 1.0;
+/// The number of steps: a simulated time of 100 s.
+pub const STEPS: usize = 100;
+/// The number of runs.
+pub const RUNS: usize = 100;
+/// |ω|, rad/s: printed as 3°, taken per second.
+pub const TURN_RATE: f64 = 3.0 * std::f64::consts::PI / 180.0;
+/// X₀, m and m/s.
+pub const INITIAL_STATE: [f64; 4] = [1000.0, 200.0, 1000.0, 200.0];
+/// The diagonal of P₀, m² and (m/s)².
+pub const INITIAL_VARIANCES: [f64; 4] = [1000.0, 10.0, 1000.0, 10.0];
+/// The diagonal entries of q, (m/s²)².
+pub const ACCELERATION_VARIANCE: f64 = 10.0;
+/// The diagonal of r, m².
+pub const MEASUREMENT_VARIANCES: [f64; 2] = [20.0, 0.1];
+
+/// The transition matrix of the Markov chain — zhu2016 (63).
+///
+/// Rows are the modes at k − 1: constant velocity, right turn, left turn (the paper does not number its turns).
+pub const TRANSITION: [[f64; 3]; 3] = [[0.9, 0.05, 0.05], [0.1, 0.8, 0.1], [0.05, 0.15, 0.8]];
+
+/// The scenario under the given choices.
+///
+/// # Errors
+///
+/// [`InvalidChoice`] for a parameter or an alternative that the paper's scenario does not have.
+pub fn scenario(choices: &Choices) -> Result<Scenario, InvalidChoice> {
+    let specification = specification();
+    specification.check(choices)?;
+    let chosen = |parameter| specification.chosen(choices, parameter);
+
+    let (measurement, measurement_deviations) = measurement(chosen("measurement")?);
+    let noise = match chosen("filter-noise")? {
+        "tenth" => ACCELERATION_VARIANCE / 10.0,
+        "hundredth" => ACCELERATION_VARIANCE / 100.0,
+        _ => ACCELERATION_VARIANCE,
+    };
+    let truth_noise_root = match chosen("truth-noise")? {
+        "as-in-the-filters" => Some(truth_noise_root()),
+        _ => None,
+    };
+    let turns = match chosen("model-order")? {
+        "left-second" => [Motion::LeftTurn, Motion::RightTurn],
+        _ => [Motion::RightTurn, Motion::LeftTurn],
+    };
+    let initial_probabilities = match chosen("initial-probabilities")? {
+        "stationary" => vec![10.0 / 23.0, 7.0 / 23.0, 6.0 / 23.0],
+        "mostly-constant-velocity" => vec![0.8, 0.1, 0.1],
+        _ => vec![1.0 / 3.0; 3],
+    };
+    let schedule_shift = match chosen("switch-instants")? {
+        "from-21-to-40" => 1,
+        _ => 0,
+    };
+    let unscented = match chosen("unscented")? {
+        "kappa-0" => Parameters::of_kappa(Rational::new(0, 1)),
+        "scaled" => Parameters {
+            alpha: Rational::new(1, 1000),
+            beta: Rational::new(2, 1),
+            kappa: Rational::new(0, 1),
+        },
+        _ => Parameters::for_gaussian(4),
+    };
+    let build = Builder {
+        measurement: measurement.clone(),
+        measurement_deviations,
+        noise,
+        initial_probabilities,
+    };
+    let motions = [Motion::Straight, turns[0], turns[1]];
+    let mut contestants = vec![
+        build.imm("IMM5CKF", &motions, &RuleName::FifthDegree),
+        build.imm("IMMCKF", &motions, &RuleName::ThirdDegree),
+        build.imm("IMMUKF", &motions, &RuleName::Unscented(Some(unscented))),
+        build.single(chosen("single-model")?),
+    ];
+    if chosen("omtm-imm")? == "stand-in" {
+        contestants.push(build.stand_in(&motions));
+    }
+    Ok(Scenario {
+        paper: "zhu2016",
+        choices: choices.clone(),
+        runs: RUNS,
+        first_time: INTERVAL,
+        interval: INTERVAL,
+        turn_rate: TURN_RATE,
+        initial_state: Vector4::from(INITIAL_STATE),
+        initial_covariance: Matrix4::from_diagonal(&Vector4::from(INITIAL_VARIANCES)),
+        draws_initial_estimate: chosen("initial-estimate")? == "drawn",
+        schedule: schedule(schedule_shift),
+        truth_noise_root,
+        measurement,
+        measurement_deviations,
+        paired: chosen("pairing")? == "paired",
+        average: match chosen("table-average")? {
+            "mean" => Average::Mean,
+            _ => Average::RootMeanSquare,
+        },
+        contestants,
+    })
+}
+
+/// "The target turns right during 20 s ~ 40 s, turns left during 60 s ~ 80 s, and maintains uniform motion during the other time": the
+/// motion of steps 1 to 100, with turns in 20 ≤ k < 40 and 60 ≤ k < 80, or `shift` steps later.
+fn schedule(shift: usize) -> Vec<Motion> {
+    (1..=STEPS)
+        .map(|k| match k {
+            k if (20 + shift..40 + shift).contains(&k) => Motion::RightTurn,
+            k if (60 + shift..80 + shift).contains(&k) => Motion::LeftTurn,
+            _ => Motion::Straight,
+        })
+        .collect()
+}
+
+/// The measurement and the standard deviations of its noise. "r = diag(20, 0.1)" reads like a range and a bearing, which are the
+/// alternatives.
+fn measurement(name: &str) -> (Measurement<f64, 4, 2>, Vector2<f64>) {
+    let positions = Measurement::Linear(matrix![1.0, 0.0, 0.0, 0.0; 0.0, 0.0, 1.0, 0.0]);
+    let polar = Measurement::Polar {
+        components: [PolarComponent::Range, PolarComponent::Bearing],
+        position: [0, 2],
+        sensor: [0.0, 0.0],
+    };
+    let [in_x, in_y] = MEASUREMENT_VARIANCES;
+    let (measurement, variances) = match name {
+        "equal-noise" => (positions, [in_x, in_x]),
+        "range-bearing" => (polar, [in_x, 1e-8]),
+        "range-bearing-coarse" => (polar, [in_x, 1e-7]),
+        _ => (positions, [in_x, in_y]),
+    };
+    (measurement, Vector2::from(variances.map(f64::sqrt)))
+}
+
+/// A square root of G q Gᵀ: G √q, with two columns of zeros.
+fn truth_noise_root() -> Matrix4<f64> {
+    let mut root = Matrix4::zeros();
+    let input = acceleration_input(&INTERVAL) * ACCELERATION_VARIANCE.sqrt();
+    root.fixed_columns_mut::<2>(0).copy_from(&input);
+    root
+}
+
+/// What the contestants have in common.
+struct Builder {
+    measurement: Measurement<f64, 4, 2>,
+    measurement_deviations: Vector2<f64>,
+    noise: f64,
+    initial_probabilities: Vec<f64>,
+}
+
+impl Builder {
+    fn problem(&self, motions: &[Motion], noise: f64) -> Problem<f64, 4, 2> {
+        let mode = |motion: &Motion| Mode {
+            name: motion.name().to_owned(),
+            transition: motion.transition(TURN_RATE, INTERVAL),
+            noise: acceleration_noise(&noise, &INTERVAL),
+        };
+        let transition = match motions {
+            [_] => vec![vec![1.0]],
+            _ => TRANSITION.iter().map(|row| row.to_vec()).collect(),
+        };
+        let variances = self
+            .measurement_deviations
+            .map(|deviation| deviation * deviation);
+        Problem {
+            modes: motions.iter().map(mode).collect(),
+            transition,
+            measurement: self.measurement.clone(),
+            measurement_noise: nalgebra::Matrix2::from_diagonal(&variances),
+            rule: None,
+        }
+    }
+
+    fn imm(&self, name: &str, motions: &[Motion], rule: &RuleName) -> Contestant {
+        let problem = self.problem(motions, self.noise);
+        Contestant::with_rule(name, problem, rule, self.initial_probabilities.clone())
+    }
+
+    /// The filter of one model that the paper calls 5CKF, without saying of which model.
+    fn single(&self, alternative: &str) -> Contestant {
+        let (motion, noise) = match alternative {
+            "coordinated-turn" => (Motion::RightTurn, self.noise),
+            "constant-velocity-ten-times-noise" => (Motion::Straight, 10.0 * self.noise),
+            _ => (Motion::Straight, self.noise),
+        };
+        let problem = self.problem(&[motion], noise);
+        Contestant::with_rule("5CKF", problem, &RuleName::FifthDegree, vec![1.0])
+    }
+
+    /// The stand-in for OMTM-IMM: Kalman filters where the measurement is linear, cubature filters of degree three where it is not.
+    fn stand_in(&self, motions: &[Motion]) -> Contestant {
+        let problem = self.problem(motions, self.noise);
+        let name = "OMTM-IMM (stand-in)";
+        if let Measurement::Linear(_) = self.measurement {
+            return Contestant {
+                name: name.to_owned(),
+                problem,
+                equations: diagonal_mixing::equations(),
+                initial_probabilities: self.initial_probabilities.clone(),
+                points: None,
+            };
+        }
+        let mixing = diagonal_mixing::equations();
+        Contestant {
+            equations: Equations {
+                mixed_mean: mixing.mixed_mean,
+                mixed_covariance: mixing.mixed_covariance,
+                ..Equations::cubature()
+            },
+            ..self.imm(name, motions, &RuleName::ThirdDegree)
+        }
+    }
+}
+
+/// The quantity of a row of the paper's table 1; none for its times.
+pub fn quantity_of_row(name: &str) -> Option<Quantity> {
+    match name {
+        "RMSE_X" => Some(Quantity::X),
+        "RMSE_X_V" => Some(Quantity::VelocityX),
+        "RMSE_Y" => Some(Quantity::Y),
+        "RMSE_Y_V" => Some(Quantity::VelocityY),
+        _ => None,
+    }
+}

@@ -1,0 +1,77 @@
+//! The ledger of claims for people.
+
+use super::WIDTH;
+use crate::paper::specification::Specification;
+use crate::paper::verdict::{Judgement, Verdict};
+use std::fmt::Write;
+
+/// One paragraph a claim: verdict, name, the paper's words, the question and the evidence.
+pub fn text(judgements: &[Judgement]) -> String {
+    let mut text = String::new();
+    for judgement in judgements {
+        let _ = writeln!(
+            text,
+            "{:<17} {}",
+            judgement.verdict.words().to_uppercase(),
+            judgement.id
+        );
+        let quote = format!("“{}” ({})", judgement.quote, judgement.place);
+        for paragraph in [&quote, &judgement.question, &judgement.evidence] {
+            text.push_str(&wrapped(paragraph));
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// How often each verdict was given, in one line.
+pub fn summary(judgements: &[Judgement]) -> String {
+    let verdicts = [
+        Verdict::Proven,
+        Verdict::Confirmed,
+        Verdict::Refuted,
+        Verdict::Undecided,
+        Verdict::NotReproducible,
+    ];
+    let counts: Vec<String> = verdicts
+        .into_iter()
+        .map(|verdict| {
+            (
+                verdict,
+                judgements.iter().filter(|j| j.verdict == verdict).count(),
+            )
+        })
+        .filter(|(_, count)| *count > 0)
+        .map(|(verdict, count)| format!("{count} {}", verdict.words()))
+        .collect();
+    format!("{} claims: {}", judgements.len(), counts.join(", "))
+}
+
+/// A paragraph broken at words and indented.
+fn wrapped(paragraph: &str) -> String {
+    const INDENT: &str = "    ";
+    let width = usize::from(WIDTH);
+    let mut text = String::new();
+    let mut line = INDENT.to_owned();
+    for word in paragraph.split_whitespace() {
+        if line.chars().count() + 1 + word.chars().count() > width && line != INDENT {
+            let _ = writeln!(text, "{line}");
+            INDENT.clone_into(&mut line);
+        }
+        if line != INDENT {
+            line.push(' ');
+        }
+        line.push_str(word);
+    }
+    let _ = writeln!(text, "{line}");
+    text
+}
+
+/// The paper whose claims follow.
+pub fn heading(specification: &Specification) -> String {
+    let paper = &specification.paper;
+    format!(
+        "{}  {}\n         {} doi:{}\n\n",
+        paper.key, paper.title, paper.venue, paper.doi
+    )
+}

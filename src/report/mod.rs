@@ -1,0 +1,61 @@
+//! What is printed: tables for people.
+//!
+//! After this folder the reader knows how each command's answer looks. The same answers are written as JSON by serialising the values
+//! themselves; nothing is computed here.
+
+pub mod claims;
+pub mod reproduction;
+pub mod rule;
+
+use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
+
+/// The width that all tables fit.
+pub const WIDTH: u16 = 100;
+
+/// A line above, below and under the header; nothing between rows.
+const STYLE: TableStyle = TableStyle::new()
+    .top_border(LineStyle::none().fill('─').junction('─'))
+    .header_separator(LineStyle::none().fill('─').junction('─'))
+    .bottom_border(LineStyle::none().fill('─').junction('─'));
+
+/// A table with a header, its columns from the second on aligned to the right.
+fn table(header: &[&str]) -> Table {
+    let mut table = Table::new();
+    table
+        .load_style(STYLE)
+        .set_content_arrangement(ContentArrangement::Dynamic)
+        .set_width(WIDTH)
+        .set_header(header.to_vec());
+    for column in table.column_iter_mut().skip(1) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    table
+}
+
+/// A figure with four significant digits, or a dash where there is none.
+pub fn figure(value: f64) -> String {
+    if !value.is_finite() {
+        return "—".to_owned();
+    }
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let magnitude = value.abs().log10().floor();
+    if !(-4.0..6.0).contains(&magnitude) {
+        return format!("{value:.2e}");
+    }
+    let decimals = (3.0 - magnitude).max(0.0) as usize;
+    format!("{value:.decimals$}")
+}
+
+/// A number of standard errors, with its sign.
+pub fn standard_errors(value: f64) -> String {
+    if !value.is_finite() {
+        return "—".to_owned();
+    }
+    if value.abs() < 10.0 {
+        format!("{value:+.1}")
+    } else {
+        format!("{value:+.0}")
+    }
+}

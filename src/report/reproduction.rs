@@ -1,0 +1,345 @@
+//! A reproduction for people: published and computed side by side.
+
+use super::{figure, standard_errors, table};
+use crate::paper::result::{Performance, Quantity, Reproduction};
+use crate::paper::specification::{Specification, Table};
+use crate::paper::{Paper, liu2017, zhu2016};
+use serde::Serialize;
+use std::fmt::Write;
+
+/// A published figure beside the computed one.
+#[derive(Debug, Clone, Serialize)]
+pub struct Comparison {
+    /// The published table's number.
+    pub table: u32,
+    /// The row's name in the published table.
+    pub row: String,
+    /// The unit.
+    pub unit: String,
+    /// The filter.
+    pub filter: String,
+    /// As published.
+    pub published: f64,
+    /// As computed.
+    pub computed: f64,
+    /// Standard error of the computed figure.
+    pub standard_error: f64,
+    /// Computed minus published, in standard errors.
+    pub difference_in_standard_errors: f64,
+}
+
+/// Every figure of the paper's tables that the runs reproduce.
+pub fn published_and_computed(paper: Paper, reproduction: &Reproduction) -> Vec<Comparison> {
+    let tables = &paper.specification().tables;
+    tables
+        .iter()
+        .flat_map(|table| compare(paper, reproduction, table))
+        .collect()
+}
+
+fn compare(paper: Paper, reproduction: &Reproduction, table: &Table) -> Vec<Comparison> {
+    let quantity_of_row = match paper {
+        Paper::Zhu2016 => zhu2016::quantity_of_row,
+        Paper::Liu2017 => liu2017::quantity_of_row,
+    };
+    let mut comparisons = Vec::new();
+    for row in &table.rows {
+        let Some(quantity) = quantity_of_row(&row.name) else {
+            continue;
+        };
+        for (column, published) in table.columns.iter().zip(&row.values) {
+            let of_column = |filter: &&Performance| filter.name.starts_with(column.as_str());
+            let Some(filter) = reproduction.filters.iter().find(of_column) else {
+                continue;
+            };
+            let Some(estimate) = reproduction.error(&filter.name, quantity) else {
+                continue;
+            };
+            comparisons.push(Comparison {
+                table: table.number,
+                row: row.name.clone(),
+                unit: row.unit.clone(),
+                filter: filter.name.clone(),
+                published: *published,
+                computed: estimate.value,
+                standard_error: estimate.standard_error,
+                difference_in_standard_errors: estimate.distance_from(*published),
+            });
+        }
+    }
+    comparisons
+}
+
+/// The whole answer of `reproduce` for one paper, as text.
+pub fn text(paper: Paper, reproduction: &Reproduction) -> String {
+    let specification = paper.specification();
+    let mut text = head(specification, reproduction);
+    for table in &specification.tables {
+        let comparisons = compare(paper, reproduction, table);
+        if !comparisons.is_empty() {
+            let _ = writeln!(text, "\nTable {}. {}", table.number, table.caption);
+            let _ = writeln!(text, "{}", errors(&comparisons));
+        }
+    }
+    let _ = writeln!(
+        text,
+        "\nPaired differences: the same truth and noise for both filters"
+    );
+    let _ = writeln!(text, "{}", differences(reproduction));
+    let _ = writeln!(text, "\nDelay until the true mode is more likely than not");
+    let _ = writeln!(text, "{}", delays(reproduction));
+    let _ = writeln!(text, "\nConsistency and cost");
+    let _ = writeln!(text, "{}", consistency(reproduction));
+    text.push_str(CONSISTENCY_NOTE);
+    text.push_str(&failures(reproduction));
+    text
+}
+
+const CONSISTENCY_NOTE: &str = "\
+NEES compares errors with the filter's own covariance (4 if they match, more if it is over-confident), NIS innovations
+with theirs (2). Inside: the part of the steps whose mean over runs is within the 95 % bounds of a matched filter.
+";
+
+fn head(specification: &Specification, reproduction: &Reproduction) -> String {
+    let paper = &specification.paper;
+    format!(
+        "{}  {}\n         {} doi:{}\n         {} runs of {} steps, seed {}; choices: {}\n",
+        paper.key,
+        paper.title,
+        paper.venue,
+        paper.doi,
+        reproduction.runs,
+        reproduction.steps,
+        reproduction.seed,
+        reproduction.choices.describe(),
+    )
+}
+
+fn errors(comparisons: &[Comparison]) -> comfy_table::Table {
+    let mut table = table(&[
+        "",
+        "filter",
+        "published",
+        "computed",
+        "standard error",
+        "difference / s.e.",
+    ]);
+    if let Some(column) = table.column_mut(1) {
+        column.set_cell_alignment(comfy_table::CellAlignment::Left);
+    }
+    let mut last = "";
+    for comparison in comparisons {
+        let row = if last == comparison.row {
+            String::new()
+        } else {
+            format!("{} ({})", comparison.row, comparison.unit)
+        };
+        last = &comparison.row;
+        table.add_row([
+            row,
+            comparison.filter.clone(),
+            comparison.published.to_string(),
+            figure(comparison.computed),
+            figure(comparison.standard_error),
+            standard_errors(comparison.difference_in_standard_errors),
+        ]);
+    }
+    table
+}
+
+fn differences(reproduction: &Reproduction) -> comfy_table::Table {
+    let mut table = table(&["", "position (m)", "/ s.e.", "velocity (m/s)", "/ s.e."]);
+    let of = |quantity| {
+        reproduction
+            .differences
+            .iter()
+            .filter(move |d| d.quantity == quantity)
+    };
+    for (position, velocity) in of(Quantity::Position).zip(of(Quantity::Velocity)) {
+        let mut row = vec![format!("{} − {}", position.filter, position.minus)];
+        for difference in [position, velocity] {
+            row.push(figure(difference.estimate.value));
+            row.push(standard_errors(difference.estimate.distance_from(0.0)));
+        }
+        table.add_row(row);
+    }
+    table
+}
+
+fn delays(reproduction: &Reproduction) -> comfy_table::Table {
+    let changes = reproduction
+        .filters
+        .iter()
+        .map(|filter| &filter.delays)
+        .max_by_key(|delays| delays.len());
+    let times: Vec<String> = changes
+        .into_iter()
+        .flatten()
+        .map(|delay| format!("at {} s", delay.time))
+        .collect();
+    let mut header = vec!["mean (greatest) of the runs, s"];
+    header.extend(times.iter().map(String::as_str));
+    let mut table = table(&header);
+    for filter in reproduction
+        .filters
+        .iter()
+        .filter(|filter| !filter.delays.is_empty())
+    {
+        let mut row = vec![filter.name.clone()];
+        for delay in &filter.delays {
+            let missed = filter.completed_runs - delay.detected;
+            let missed = match missed {
+                0 => String::new(),
+                missed => format!(", {missed} never"),
+            };
+            row.push(format!("{:.2} ({}{missed})", delay.mean, delay.greatest));
+        }
+        table.add_row(row);
+    }
+    table
+}
+
+fn consistency(reproduction: &Reproduction) -> comfy_table::Table {
+    let header = [
+        "",
+        "NEES",
+        "inside",
+        "NIS",
+        "inside",
+        "points",
+        "of weight ≠ 0",
+        "µs a step",
+        "failed runs",
+    ];
+    let mut table = table(&header);
+    for filter in &reproduction.filters {
+        let count =
+            |points: Option<usize>| points.map_or_else(|| "—".to_owned(), |p| p.to_string());
+        table.add_row([
+            filter.name.clone(),
+            figure(filter.nees.mean.value),
+            format!("{:.0} %", 100.0 * filter.nees.inside),
+            figure(filter.nis.mean.value),
+            format!("{:.0} %", 100.0 * filter.nis.inside),
+            count(filter.points),
+            count(filter.effective_points),
+            format!("{:.1}", filter.microseconds_per_step),
+            filter.failures.len().to_string(),
+        ]);
+    }
+    table
+}
+
+/// The runs that ended early, the first three of each filter by name.
+fn failures(reproduction: &Reproduction) -> String {
+    let mut text = String::new();
+    for filter in reproduction
+        .filters
+        .iter()
+        .filter(|filter| !filter.failures.is_empty())
+    {
+        let count = filter.failures.len();
+        let _ = writeln!(
+            text,
+            "\n{}: {count} of {} runs failed.",
+            filter.name, reproduction.runs
+        );
+        for failed in filter.failures.iter().take(3) {
+            let _ = writeln!(text, "  run {}: {}", failed.run, failed.failure);
+        }
+        if count > 3 {
+            let _ = writeln!(text, "  and {} more, all listed with --json", count - 3);
+        }
+    }
+    text
+}
+
+/// The position errors under each open choice, one line an alternative.
+pub fn alternatives(paper: Paper, reproductions: &[Reproduction]) -> String {
+    let names: Vec<&str> = paper.specification().tables[0]
+        .columns
+        .iter()
+        .map(String::as_str)
+        .collect();
+    let mut header = vec!["position error (m)"];
+    header.extend(&names);
+    let mut table = table(&header);
+    for reproduction in reproductions {
+        let mut row = vec![reproduction.choices.describe()];
+        for name in &names {
+            let filter = reproduction
+                .filters
+                .iter()
+                .find(|f| f.name.starts_with(name));
+            let error = filter.and_then(|f| reproduction.error(&f.name, Quantity::Position));
+            let failed = filter.map_or(0, |f| f.failures.len());
+            let mut cell = error.map_or_else(|| "—".to_owned(), |error| figure(error.value));
+            if failed > 0 {
+                let _ = write!(cell, " ({failed} failed)");
+            }
+            row.push(cell);
+        }
+        table.add_row(row);
+    }
+    format!("Each open choice by itself, the others at their defaults\n{table}\n")
+}
+
+/// The open parameters of a scenario and their alternatives.
+pub fn choices(specification: &Specification) -> String {
+    let mut text = format!(
+        "{}  {}\n",
+        specification.paper.key, specification.paper.title
+    );
+    for parameter in &specification.parameters {
+        let _ = writeln!(
+            text,
+            "\n  {}   (the paper prints: {})",
+            parameter.name, parameter.printed
+        );
+        for alternative in &parameter.alternatives {
+            let mark = if alternative.name == parameter.default {
+                "*"
+            } else {
+                " "
+            };
+            let _ = writeln!(
+                text,
+                "   {mark} {:<34} {}",
+                alternative.name, alternative.meaning
+            );
+        }
+    }
+    text.push_str(
+        "\n  * the default. Choose with: immaculate reproduce --set PARAMETER=ALTERNATIVE\n\n",
+    );
+    text
+}
+
+/// RMSE over time as CSV: `time,filter,quantity,rmse`.
+pub fn errors_csv(reproduction: &Reproduction) -> String {
+    let mut text = String::from("time,filter,quantity,rmse\n");
+    for filter in &reproduction.filters {
+        for history in &filter.rmse {
+            for (time, value) in reproduction.times.iter().zip(&history.values) {
+                let quantity = history.quantity.label();
+                let _ = writeln!(text, "{time},{},{quantity},{value}", filter.name);
+            }
+        }
+    }
+    text
+}
+
+/// Mean mode probabilities over time as CSV: `time,filter,mode,probability,truth`, the last 1 for the mode of the true motion.
+pub fn mode_probabilities_csv(reproduction: &Reproduction) -> String {
+    let mut text = String::from("time,filter,mode,probability,truth\n");
+    for filter in &reproduction.filters {
+        for (k, probabilities) in filter.mode_probabilities.iter().enumerate() {
+            for (mode, probability) in filter.modes.iter().zip(probabilities) {
+                let truth = u8::from(*mode == reproduction.motions[k]);
+                let time = reproduction.times[k];
+                let _ = writeln!(text, "{time},{},{mode},{probability},{truth}", filter.name);
+            }
+        }
+    }
+    text
+}
