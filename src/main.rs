@@ -49,12 +49,12 @@ struct Reproduce {
     /// The seed of the random numbers
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
-    /// Choose an alternative for an open parameter; may be given again (`immaculate choices` lists them)
+    /// Choose an alternative for an open parameter and run that alone; may be given again (`immaculate choices` lists them)
     #[arg(long = "set", value_name = "PARAMETER=ALTERNATIVE")]
     choices: Vec<String>,
-    /// Run every alternative by itself as well, and list what each does to the errors
+    /// Leave out the runs of every open choice by itself
     #[arg(long)]
-    alternatives: bool,
+    brief: bool,
     /// Write the results, errors over time and mode probabilities as files to this directory
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -191,7 +191,7 @@ fn reproduce(arguments: &Reproduce) -> Result<String, Refusal> {
     for paper in &papers {
         let scenario = paper.scenario(&chosen).map_err(Refusal::request)?;
         let mut choices = vec![chosen.clone()];
-        if arguments.alternatives {
+        if !arguments.brief && arguments.choices.is_empty() {
             choices.extend(paper.specification().single_alternatives());
         }
         plan.push((*paper, choices, effort.runs.unwrap_or(scenario.runs)));
@@ -227,7 +227,7 @@ fn reproduce(arguments: &Reproduce) -> Result<String, Refusal> {
         }
         values.push(value);
         text.push_str(&report::reproduction::text(paper, main));
-        if arguments.alternatives {
+        if !alternatives.is_empty() {
             text.push('\n');
             text.push_str(&report::reproduction::alternatives(paper, &reproductions));
         }

@@ -7,8 +7,10 @@
 //! - [`scenario`]: a target that flies straight and turns, seen by a sensor, and the filters that compete on it;
 //! - [`monte_carlo`]: runs, on all cores, the same for any number of them;
 //! - [`result`]: what the runs show;
+//! - [`experiment`]: a scenario together with its runs;
 //! - [`verdict`]: how a claim is judged.
 
+pub mod experiment;
 pub mod liu2017;
 pub mod monte_carlo;
 pub mod result;

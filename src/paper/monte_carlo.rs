@@ -95,7 +95,7 @@ fn one_run(scenario: &Scenario, run: usize, seed: u64) -> Vec<Run> {
 }
 
 /// One contestant on one draw, to its end or to the first step that cannot be computed.
-fn track(contestant: &Contestant, draw: &Draw) -> Run {
+pub fn track(contestant: &Contestant, draw: &Draw) -> Run {
     let mut run = Run {
         errors: Vec::with_capacity(draw.truth.len()),
         nees: Vec::with_capacity(draw.truth.len()),

@@ -232,6 +232,13 @@ impl Comparison<'_> {
         (mean(&nees), mean(&nis))
     }
 
+    /// The greatest position error of a contestant at any step of any run, m.
+    pub fn greatest_position_error(&self, contestant: usize) -> f64 {
+        let runs = self.runs.iter().flat_map(|run| &run[contestant].errors);
+        runs.map(|error| Quantity::Position.squared(error).sqrt())
+            .fold(0.0, f64::max)
+    }
+
     /// The mode of a contestant that models the truth at each step; none when it has no such mode.
     pub fn true_modes(&self, contestant: usize) -> Option<Vec<usize>> {
         let modes = &self.scenario.contestants[contestant].problem.modes;

@@ -4,7 +4,9 @@
 
 use super::specification::{Claim, Specification};
 use crate::statistics::Estimate;
+use crate::statistics::estimate::figure;
 use serde::Serialize;
+use std::cmp::Ordering;
 
 /// What became of a claim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -57,12 +59,12 @@ pub struct Judgement {
 pub const DECISIVE: f64 = 4.0;
 
 /// Whether a difference is below zero, above it, or neither with certainty.
-pub fn sign_of(difference: Estimate) -> Option<std::cmp::Ordering> {
+pub fn sign_of(difference: Estimate) -> Option<Ordering> {
     let distance = difference.distance_from(0.0);
     if distance <= -DECISIVE {
-        Some(std::cmp::Ordering::Less)
+        Some(Ordering::Less)
     } else if distance >= DECISIVE {
-        Some(std::cmp::Ordering::Greater)
+        Some(Ordering::Greater)
     } else {
         None
     }
@@ -89,4 +91,75 @@ impl Specification {
             evidence,
         }
     }
+}
+
+/// A difference in words: `−0.893 ± 0.027 m (−33 standard errors)`.
+pub fn in_words(difference: Estimate, unit: &str) -> String {
+    let distance = difference.distance_from(0.0);
+    format!(
+        "{} ± {} {unit} ({distance:+.1} standard errors)",
+        figure(difference.value),
+        figure(difference.standard_error),
+    )
+}
+
+/// The verdict on "the first is smaller", from the differences first − second: confirmed when all are certainly below zero, refuted when
+/// one is certainly above, undecided otherwise.
+pub fn all_below_zero(differences: &[Estimate]) -> Verdict {
+    let signs: Vec<_> = differences
+        .iter()
+        .map(|difference| sign_of(*difference))
+        .collect();
+    if signs.iter().all(|sign| *sign == Some(Ordering::Less)) {
+        Verdict::Confirmed
+    } else if signs.contains(&Some(Ordering::Greater)) {
+        Verdict::Refuted
+    } else {
+        Verdict::Undecided
+    }
+}
+
+/// Proven or refuted, by arithmetic.
+pub fn proven_if(holds: bool) -> Verdict {
+    if holds {
+        Verdict::Proven
+    } else {
+        Verdict::Refuted
+    }
+}
+
+/// Confirmed or refuted, by runs.
+pub fn confirmed_if(holds: bool) -> Verdict {
+    if holds {
+        Verdict::Confirmed
+    } else {
+        Verdict::Refuted
+    }
+}
+
+/// The verdict on "the first is better", where better means smaller by more than a thousandth: from the difference first − second and the
+/// error of the second. Refuted when it is certain that the first is not better by so much.
+pub fn better_by_a_thousandth(difference: Estimate, error: Estimate) -> Verdict {
+    let least = -RELEVANT * error.value;
+    let certainty = DECISIVE * difference.standard_error;
+    if difference.value + certainty < least {
+        Verdict::Confirmed
+    } else if difference.value - certainty > least {
+        Verdict::Refuted
+    } else {
+        Verdict::Undecided
+    }
+}
+
+/// The least part of an error that counts as a difference between filters: a thousandth, a tenth of the last digit that is published.
+pub const RELEVANT: f64 = 1e-3;
+
+/// The verdict on several of which all must hold: refuted if one is, undecided if one is, else the first.
+pub fn all_of(verdicts: &[Verdict]) -> Verdict {
+    for decisive in [Verdict::Refuted, Verdict::Undecided] {
+        if verdicts.contains(&decisive) {
+            return decisive;
+        }
+    }
+    verdicts.first().copied().unwrap_or(Verdict::Undecided)
 }

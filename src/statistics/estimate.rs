@@ -94,3 +94,19 @@ pub fn paired_difference(a: &[f64], b: &[f64]) -> Estimate {
         standard_error: mean(&terms).standard_error,
     }
 }
+
+/// A figure with four significant digits, or a dash where there is none.
+pub fn figure(value: f64) -> String {
+    if !value.is_finite() {
+        return "—".to_owned();
+    }
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let magnitude = value.abs().log10().floor();
+    if !(-4.0..6.0).contains(&magnitude) {
+        return format!("{value:.2e}");
+    }
+    let decimals = (3.0 - magnitude).max(0.0) as usize;
+    format!("{value:.decimals$}")
+}
