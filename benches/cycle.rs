@@ -16,11 +16,7 @@ fn main() {
 }
 
 /// The three-mode problem with a measurement and a rule.
-fn filter(
-    measurement: Measurement<f64, 4, 2>,
-    noise: [f64; 2],
-    rule: Option<&str>,
-) -> Imm<f64, 4, 2> {
+fn filter(measurement: Measurement<f64, 4, 2>, noise: [f64; 2], rule: Option<&str>) -> Imm<f64, 4, 2> {
     let turn = 3.0_f64.to_radians();
     let mode = |name: &str, transition| Mode {
         name: name.to_owned(),
@@ -57,36 +53,32 @@ fn filter(
     Imm::new(problem, equations, &initial).unwrap()
 }
 
-/// Steps along measurements of a straight line, over and over from the same start.
-fn run(bencher: Bencher, filter: &Imm<f64, 4, 2>, measure: fn(f64, f64) -> SVector<f64, 2>) {
-    let mut running = filter.clone();
-    let mut k = 0.0;
+/// Steps along measurements of a straight line.
+fn run(bencher: Bencher, mut filter: Imm<f64, 4, 2>, measure: fn(f64, f64) -> SVector<f64, 2>) {
+    let (mut x, mut y) = (15000.0, 1000.0);
     bencher.bench_local(|| {
-        k += 1.0;
-        if k > 50.0 {
-            running = filter.clone();
-            k = 1.0;
-        }
-        let z = measure(15000.0 - 180.0 * k, 1000.0 + 200.0 * k);
-        black_box(running.step(black_box(Some(&z))).map(|step| step.step))
+        x -= 180.0;
+        y += 200.0;
+        let z = measure(x, y);
+        black_box(filter.step(black_box(Some(&z))).map(|step| step.step))
     });
 }
 
-#[divan::bench]
+#[divan::bench(sample_size = 200, sample_count = 1000)]
 fn linear_kalman(bencher: Bencher) {
     let h = matrix![1.0, 0.0, 0.0, 0.0; 0.0, 0.0, 1.0, 0.0];
     let filter = filter(Measurement::Linear(h), [1600.0, 1600.0], None);
-    run(bencher, &filter, |x, y| vector![x, y]);
+    run(bencher, filter, |x, y| vector![x, y]);
 }
 
-#[divan::bench(args = ["cubature-3", "unscented", "simplex-5", "cubature-5"])]
+#[divan::bench(sample_size = 200, sample_count = 200, args = ["cubature-3", "unscented", "simplex-5", "cubature-5"])]
 fn linear_cubature(bencher: Bencher, rule: &str) {
     let h = matrix![1.0, 0.0, 0.0, 0.0; 0.0, 0.0, 1.0, 0.0];
     let filter = filter(Measurement::Linear(h), [1600.0, 1600.0], Some(rule));
-    run(bencher, &filter, |x, y| vector![x, y]);
+    run(bencher, filter, |x, y| vector![x, y]);
 }
 
-#[divan::bench(args = ["cubature-3", "unscented", "simplex-5", "cubature-5", "gauss-hermite-3"])]
+#[divan::bench(sample_size = 200, sample_count = 200, args = ["cubature-3", "unscented", "simplex-5", "cubature-5", "gauss-hermite-3"])]
 fn range_bearing_cubature(bencher: Bencher, rule: &str) {
     let measurement = Measurement::Polar {
         components: [PolarComponent::Range, PolarComponent::Bearing],
@@ -94,5 +86,5 @@ fn range_bearing_cubature(bencher: Bencher, rule: &str) {
         sensor: [0.0, 0.0],
     };
     let filter = filter(measurement, [1600.0, 49e-6], Some(rule));
-    run(bencher, &filter, |x, y| vector![x.hypot(y), y.atan2(x)]);
+    run(bencher, filter, |x, y| vector![x.hypot(y), y.atan2(x)]);
 }

@@ -129,7 +129,7 @@ fn main() -> ExitCode {
         Command::Reproduce(arguments) => reproduce(arguments),
         Command::Claims(arguments) => claims(arguments),
         Command::Rule(arguments) => rule(arguments),
-        Command::Choices(arguments) => choices(arguments),
+        Command::Choices(arguments) => Ok(choices(arguments)),
     };
     match outcome.and_then(|text| print(&text)) {
         Ok(()) => ExitCode::SUCCESS,
@@ -178,9 +178,7 @@ fn effort(runs: Option<u64>, seed: u64) -> Effort {
 fn progress_bar(length: u64, what: &'static str) -> ProgressBar {
     let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} runs, {eta} left")
         .unwrap_or_else(|_| ProgressStyle::default_bar());
-    ProgressBar::new(length)
-        .with_style(style)
-        .with_message(what)
+    ProgressBar::new(length).with_style(style).with_message(what)
 }
 
 fn reproduce(arguments: &Reproduce) -> Result<String, Refusal> {
@@ -200,10 +198,7 @@ fn reproduce(arguments: &Reproduce) -> Result<String, Refusal> {
         std::fs::create_dir_all(directory)
             .map_err(|error| Refusal::Output(format!("{}: {error}", directory.display())))?;
     }
-    let total: usize = plan
-        .iter()
-        .map(|(_, choices, runs)| choices.len() * runs)
-        .sum();
+    let total: usize = plan.iter().map(|(_, choices, runs)| choices.len() * runs).sum();
     let bar = progress_bar(total as u64, "reproducing");
     let advance: Progress = &|| bar.inc(1);
 
@@ -220,7 +215,7 @@ fn reproduce(arguments: &Reproduce) -> Result<String, Refusal> {
         let value = json!({
             "published_and_computed": comparisons,
             "reproduction": main,
-            "alternatives": alternatives,
+            "alternatives": alternatives.iter().map(report::reproduction::errors_of).collect::<Vec<_>>(),
         });
         if let Some(directory) = &arguments.out {
             write_files(directory, main, &value)?;
@@ -261,8 +256,7 @@ fn write_files(
     ];
     for (name, content) in files {
         let path = directory.join(name);
-        std::fs::write(&path, content)
-            .map_err(|error| Refusal::Output(format!("{}: {error}", path.display())))?;
+        std::fs::write(&path, content).map_err(|error| Refusal::Output(format!("{}: {error}", path.display())))?;
     }
     Ok(())
 }
@@ -281,14 +275,12 @@ fn claims(arguments: &Claims) -> Result<String, Refusal> {
         let judgements = paper.judge(effort, advance).map_err(Refusal::request)?;
         text.push_str(&report::claims::heading(paper.specification()));
         text.push_str(&report::claims::text(&judgements));
-        text.push_str(&format!("{}\n\n", report::claims::summary(&judgements)));
+        text.push_str(&report::claims::summary(&judgements));
         values.push(json!({ "paper": paper.key(), "claims": judgements }));
     }
     bar.finish_and_clear();
     if arguments.json {
-        return Ok(json_text(
-            &json!({ "seed": arguments.seed, "papers": values }),
-        ));
+        return Ok(json_text(&json!({ "seed": arguments.seed, "papers": values })));
     }
     Ok(text)
 }
@@ -303,8 +295,7 @@ fn rule(arguments: &Rule) -> Result<String, Refusal> {
         }
         name = RuleName::Unscented(Some(unscented_parameters(arguments)?));
     }
-    let description = report::rule::describe(&name, &arguments.name, arguments.dimension)
-        .map_err(Refusal::request)?;
+    let description = report::rule::describe(&name, &arguments.name, arguments.dimension).map_err(Refusal::request)?;
     if arguments.json {
         return Ok(json_text(&json!(description)));
     }
@@ -321,23 +312,23 @@ fn unscented_parameters(arguments: &Rule) -> Result<unscented::Parameters, Refus
     ];
     for (name, text, parameter) in given {
         if let Some(text) = text {
-            *parameter = Rational::from_decimal(text).ok_or_else(|| {
-                Refusal::request(format!("--{name}: `{text}` is not a decimal number"))
-            })?;
+            *parameter = Rational::from_decimal(text)
+                .ok_or_else(|| Refusal::request(format!("--{name}: `{text}` is not a decimal number")))?;
         }
     }
     Ok(parameters)
 }
 
-fn choices(arguments: &ListChoices) -> Result<String, Refusal> {
+fn choices(arguments: &ListChoices) -> String {
     let papers = papers(&arguments.papers);
     if arguments.json {
-        let parameters = |paper: &Paper| json!({ "paper": paper.key(), "parameters": paper.specification().parameters });
+        let parameters =
+            |paper: &Paper| json!({ "paper": paper.key(), "parameters": paper.specification().parameters });
         let values: Vec<_> = papers.iter().map(parameters).collect();
-        return Ok(json_text(&json!({ "papers": values })));
+        return json_text(&json!({ "papers": values }));
     }
-    Ok(papers
+    papers
         .iter()
         .map(|paper| report::reproduction::choices(paper.specification()))
-        .collect())
+        .collect()
 }

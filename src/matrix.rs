@@ -54,9 +54,7 @@ pub struct NotPositiveDefinite {
 ///
 /// Evidence: `the_cholesky_factor_times_its_transpose_is_the_matrix` (exact),
 /// `a_matrix_that_is_not_positive_definite_has_no_cholesky_factor`.
-pub fn cholesky<T: Real, const N: usize>(
-    matrix: &SMatrix<T, N, N>,
-) -> Result<SMatrix<T, N, N>, NotPositiveDefinite> {
+pub fn cholesky<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> Result<SMatrix<T, N, N>, NotPositiveDefinite> {
     let mut root = SMatrix::<T, N, N>::zeros();
     for j in 0..N {
         let mut pivot = matrix[(j, j)].clone();
@@ -77,11 +75,7 @@ pub fn cholesky<T: Real, const N: usize>(
 }
 
 /// A pivot must be known to be positive.
-fn check_pivot<T: Real>(
-    pivot: &T,
-    row: usize,
-    dimension: usize,
-) -> Result<(), NotPositiveDefinite> {
+fn check_pivot<T: Real>(pivot: &T, row: usize, dimension: usize) -> Result<(), NotPositiveDefinite> {
     let order = pivot.partial_cmp(&T::zero());
     if order == Some(Ordering::Greater) {
         return Ok(());
@@ -147,12 +141,12 @@ pub fn ldl<T: Field, const N: usize>(matrix: &SMatrix<T, N, N>) -> Ldl<T, N> {
 
 /// All pivots of a factorisation must be known to be positive: only then is L D Lᵀ positive definite.
 ///
+/// Source: vᵀ L D Lᵀ v = Σᵢ Dᵢ yᵢ² with y = Lᵀ v, and L is invertible.
+///
 /// # Errors
 ///
 /// [`NotPositiveDefinite`] with the first pivot that is not.
-pub fn check_positive_definite<T: Real, const N: usize>(
-    factors: &Ldl<T, N>,
-) -> Result<(), NotPositiveDefinite> {
+pub fn check_positive_definite<T: Real, const N: usize>(factors: &Ldl<T, N>) -> Result<(), NotPositiveDefinite> {
     for (row, pivot) in factors.diagonal.iter().enumerate() {
         check_pivot(pivot, row, N)?;
     }
@@ -231,6 +225,8 @@ pub fn is_symmetric<T: Field, const N: usize>(matrix: &SMatrix<T, N, N>) -> bool
 /// Noise covariances of low rank are legitimate (zhu2016's has rank two), and elimination in rounded arithmetic leaves a
 /// rest of their zero pivots of the order of N roundings of the diagonal: a pivot counts as zero below N · 2⁻⁵⁰ of its
 /// diagonal entry, and an entry below it when the same holds against the geometric mean of its two diagonal entries.
+///
+/// Source: Golub and Van Loan, Matrix Computations, 4th edition, section 4.2, positive semidefinite matrices; without pivoting.
 pub fn is_positive_semidefinite<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> bool {
     let rounding = T::integer(i64::try_from(N).unwrap_or(i64::MAX)) / T::integer(1 << 50);
     let mut rest = matrix.clone();

@@ -19,22 +19,20 @@ use std::cmp::Ordering;
 
 /// Small fractions, zero among them.
 fn rationals() -> impl Strategy<Value = Rational> {
-    (-12_i64..=12, 1_i64..=9)
-        .prop_map(|(numerator, denominator)| Rational::new(numerator, denominator))
+    (-12_i64..=12, 1_i64..=9).prop_map(|(numerator, denominator)| Rational::new(numerator, denominator))
 }
 
 /// Fractions of any sign and size: `numerator / denominator · 2ᵉ`, from far below the smallest double to far above the
 /// largest.
 fn rationals_of_any_size() -> impl Strategy<Value = Rational> {
-    (any::<i64>(), 1..=i64::MAX, -1200_i32..=1200).prop_map(|(numerator, denominator, exponent)| {
-        Rational::new(numerator, denominator) * power_of_two(exponent)
-    })
+    (any::<i64>(), 1..=i64::MAX, -1200_i32..=1200)
+        .prop_map(|(numerator, denominator, exponent)| Rational::new(numerator, denominator) * power_of_two(exponent))
 }
 
 /// Sums of up to three terms `fraction · √radicand`.
 fn surds() -> impl Strategy<Value = Surd> {
-    let term = (rationals(), 1_i64..=15)
-        .prop_map(|(coefficient, radicand)| Surd::rational(&coefficient) * root(radicand));
+    let term =
+        (rationals(), 1_i64..=15).prop_map(|(coefficient, radicand)| Surd::rational(&coefficient) * root(radicand));
     proptest::collection::vec(term, 0..=3)
         .prop_map(|terms| terms.into_iter().fold(Surd::zero(), |sum, term| sum + term))
 }
@@ -90,11 +88,7 @@ fn root(value: i64) -> Surd {
 /// 2ᵉ, exactly.
 fn power_of_two(exponent: i32) -> Rational {
     let power = Rational::integer(2).pow(exponent.unsigned_abs());
-    if exponent < 0 {
-        Rational::one() / power
-    } else {
-        power
-    }
+    if exponent < 0 { Rational::one() / power } else { power }
 }
 
 // Fields
@@ -169,10 +163,7 @@ proptest! {
 /// The square of (1 a; 0 1) is (1 2a; 0 1), in nalgebra's own product.
 fn check_matrix_product<T: Field>(a: &T) -> Result<(), TestCaseError> {
     let shear = |a: T| Matrix2::new(T::one(), a, T::zero(), T::one());
-    prop_assert_eq!(
-        shear(a.clone()) * shear(a.clone()),
-        shear(a.clone() + a.clone())
-    );
+    prop_assert_eq!(shear(a.clone()) * shear(a.clone()), shear(a.clone() + a.clone()));
     let product = shear(a.clone()) * Vector2::new(T::zero(), T::one());
     prop_assert_eq!(product, Vector2::new(a.clone(), T::one()));
     Ok(())
@@ -242,9 +233,7 @@ fn undecided_has_no_order_no_sign_no_value_and_prints_its_name() {
     assert!(!rational.is_positive() && !surd.is_positive());
     assert!(rational.value().is_none() && surd.as_rational().is_none());
     assert!(rational.to_f64().is_nan() && surd.to_f64().is_nan());
-    assert!(
-        !rational.pow(0).is_decided() && !rational.abs().is_decided() && !surd.abs().is_decided()
-    );
+    assert!(!rational.pow(0).is_decided() && !rational.abs().is_decided() && !surd.abs().is_decided());
     assert_eq!(rational.to_decimal(3), "undecided");
     assert_eq!(surd.to_decimal(3), "undecided");
     assert_eq!(format!("{rational:?} {surd:?}"), "undecided undecided");
@@ -284,10 +273,7 @@ fn a_radicand_beyond_64_bits_is_undecided_and_one_below_is_exact() {
     assert!(line.is_decided());
     assert!(!RationalFunction::new(Polynomial::one(), line.numerator().clone()).is_decided());
     // The root of an even power of two is exact however small it is.
-    assert_eq!(
-        Surd::root(&power_of_two(-2148)),
-        Surd::rational(&power_of_two(-1074))
-    );
+    assert_eq!(Surd::root(&power_of_two(-2148)), Surd::rational(&power_of_two(-1074)));
 }
 
 // Decimals and doubles
@@ -344,9 +330,7 @@ fn a_double_goes_in_exactly_and_comes_out_again() {
         // The sign of a zero is lost, since it is not part of the number.
         exact.to_f64() == double && reread == Some(double)
     }
-    QuickCheck::new()
-        .tests(2000)
-        .quickcheck(law as fn(f64) -> bool);
+    QuickCheck::new().tests(2000).quickcheck(law as fn(f64) -> bool);
     assert_eq!(
         Rational::from_f64(0.1).to_string(),
         "3602879701896397/36028797018963968"
@@ -395,15 +379,13 @@ fn is_nearest_double(number: &Surd, double: f64) -> bool {
     }
     let sign_agrees = number.is_zero() || double.is_sign_positive() == number.is_positive();
     sign_agrees
-        && [double.next_down(), double.next_up()]
-            .into_iter()
-            .all(|neighbour| {
-                match distance.partial_cmp(&(exact(neighbour) - number.clone()).abs()) {
-                    Some(Ordering::Less) => true,
-                    Some(Ordering::Equal) => double.to_bits().is_multiple_of(2),
-                    _ => false,
-                }
-            })
+        && [double.next_down(), double.next_up()].into_iter().all(|neighbour| {
+            match distance.partial_cmp(&(exact(neighbour) - number.clone()).abs()) {
+                Some(Ordering::Less) => true,
+                Some(Ordering::Equal) => double.to_bits().is_multiple_of(2),
+                _ => false,
+            }
+        })
 }
 
 /// The middle between a finite double and the next one away from zero.
@@ -540,10 +522,7 @@ proptest! {
 #[test]
 fn equal_surds_are_equal_however_they_are_written() {
     let sum = root(2) + root(3);
-    assert_eq!(
-        sum.clone() * sum.clone(),
-        Surd::integer(5) + Surd::integer(2) * root(6)
-    );
+    assert_eq!(sum.clone() * sum.clone(), Surd::integer(5) + Surd::integer(2) * root(6));
     assert_eq!(root(12) - root(3) - root(3), Surd::zero());
     let denominator = Surd::one() + root(2) + root(3);
     assert_eq!(Surd::one() / denominator.clone() * denominator, Surd::one());
@@ -643,22 +622,12 @@ proptest! {
 
 #[test]
 fn an_unknown_without_a_value_leaves_the_function_undecided() {
-    let (n, m) = (
-        RationalFunction::unknown("n"),
-        RationalFunction::unknown("m"),
-    );
+    let (n, m) = (RationalFunction::unknown("n"), RationalFunction::unknown("m"));
     let function = &n / &m;
     let (one, zero) = (Rational::one(), Rational::zero());
     assert!(function.evaluate(&[("n", one.clone())]).is_none());
-    assert!(
-        function
-            .evaluate(&[("n", one.clone()), ("m", zero)])
-            .is_none()
-    );
-    assert_eq!(
-        function.evaluate(&[("n", one.clone()), ("m", one)]),
-        Some(Surd::one())
-    );
+    assert!(function.evaluate(&[("n", one.clone()), ("m", zero)]).is_none());
+    assert_eq!(function.evaluate(&[("n", one.clone()), ("m", one)]), Some(Surd::one()));
     assert!(function.substitute(&[("n", 1.0)]).is_nan());
     assert_eq!(function.substitute(&[("n", 1.0), ("m", 4.0)]), 0.25);
 }
@@ -667,18 +636,12 @@ fn an_unknown_without_a_value_leaves_the_function_undecided() {
 fn rational_functions_print_as_they_are_written() {
     let n = || RationalFunction::unknown("n");
     let integer = RationalFunction::integer;
-    assert_eq!(
-        ((n() + integer(2)) / (n() - integer(1))).to_string(),
-        "(n + 2)/(n - 1)"
-    );
+    assert_eq!(((n() + integer(2)) / (n() - integer(1))).to_string(), "(n + 2)/(n - 1)");
     assert_eq!((integer(1) / n()).to_string(), "1/n");
     assert_eq!((n() * n() / n()).to_string(), "n");
     assert_eq!((integer(1) / (integer(2) * n())).to_string(), "(1/2)/n");
     let coefficient = RationalFunction::surd(&(root(2) + Surd::one()));
-    assert_eq!(
-        (coefficient * n() - integer(3)).to_string(),
-        "(√2 + 1)·n - 3"
-    );
+    assert_eq!((coefficient * n() - integer(3)).to_string(), "(√2 + 1)·n - 3");
     let m = RationalFunction::unknown("m");
     assert_eq!((integer(1) / (m * n())).to_string(), "1/(m·n)");
 }

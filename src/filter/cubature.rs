@@ -70,10 +70,7 @@ pub fn propagated_point<T: Field, const N: usize>(
 /// Why: the rule's approximation of E f(x). zhu2016 sums its three orbits apart, in (22) and (23).
 ///
 /// Evidence: as [`point`](fn@point).
-pub fn weighted_mean<T: Field, const N: usize>(
-    weights: &[T],
-    points: &[SVector<T, N>],
-) -> SVector<T, N> {
+pub fn weighted_mean<T: Field, const N: usize>(weights: &[T], points: &[SVector<T, N>]) -> SVector<T, N> {
     let mut mean = SVector::zeros();
     for (weight, point) in weights.iter().zip(points) {
         mean += point * weight.clone();

@@ -8,10 +8,7 @@ use nalgebra::{SMatrix, SVector};
 /// Predicted mean, x̂⁻ = F x̂.
 ///
 /// Source: Kalman 1960; liu2017 (1) without noise.
-pub fn predicted_mean<T: Field, const N: usize>(
-    transition: &SMatrix<T, N, N>,
-    mean: &SVector<T, N>,
-) -> SVector<T, N> {
+pub fn predicted_mean<T: Field, const N: usize>(transition: &SMatrix<T, N, N>, mean: &SVector<T, N>) -> SVector<T, N> {
     transition * mean
 }
 

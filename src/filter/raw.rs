@@ -43,10 +43,7 @@ pub fn raw_covariance<T: Field, const N: usize>(
 /// The sum of weighted squares alone, which zhu2016 (24) prints for the predicted covariance: Σₛ wₛ X*ₛ X*ₛᵀ.
 ///
 /// Evidence: `printed_predicted_covariance_is_a_raw_second_moment_without_noise`.
-pub fn raw_second_moment<T: Field, const N: usize>(
-    weights: &[T],
-    points: &[SVector<T, N>],
-) -> SMatrix<T, N, N> {
+pub fn raw_second_moment<T: Field, const N: usize>(weights: &[T], points: &[SVector<T, N>]) -> SMatrix<T, N, N> {
     let mut moment = SMatrix::zeros();
     for (weight, point) in weights.iter().zip(points) {
         moment += (point * point.transpose()) * weight.clone();

@@ -104,8 +104,7 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
         let points = problem.rule.as_ref().map_or(0, |rule| rule.points.len());
         let mut now = Step::zeros(problem.modes.len(), points);
         now.updated.clone_from(&initial.modes);
-        now.mode_probabilities
-            .clone_from(&initial.mode_probabilities);
+        now.mode_probabilities.clone_from(&initial.mode_probabilities);
         now.combined.mean = (equations.combined_mean)(&problem, &now, &now);
         now.combined.covariance = (equations.combined_covariance)(&problem, &now, &now);
         Ok(Self {
@@ -164,8 +163,7 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
             let now = &mut self.now;
             now.forget_measured_values();
             now.updated.clone_from(&now.predicted);
-            now.mode_probabilities
-                .clone_from(&now.predicted_mode_probabilities);
+            now.mode_probabilities.clone_from(&now.predicted_mode_probabilities);
         }
         self.combine();
         Ok(())
@@ -176,11 +174,9 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
         let (e, problem, previous, now) = self.parts();
         let modes = problem.modes.len();
         for j in 0..modes {
-            now.predicted_mode_probabilities[j] =
-                (e.predicted_mode_probability)(problem, previous, now, j);
+            now.predicted_mode_probabilities[j] = (e.predicted_mode_probability)(problem, previous, now, j);
             for i in 0..modes {
-                now.mixing_probabilities[j][i] =
-                    (e.mixing_probability)(problem, previous, now, j, i);
+                now.mixing_probabilities[j][i] = (e.mixing_probability)(problem, previous, now, j, i);
             }
             now.mixed[j].mean = (e.mixed_mean)(problem, previous, now, j);
             now.mixed[j].covariance = (e.mixed_covariance)(problem, previous, now, j);
@@ -191,10 +187,8 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
     fn predict(&mut self, j: usize) -> Result<(), Failure> {
         let (e, problem, previous, now) = self.parts();
         if e.draws_points {
-            now.mixed_square_roots[j] =
-                (e.mixed_square_root)(problem, previous, now, j).map_err(|pivot| {
-                    failure(problem, now, j, "zhu2016 (1)", "mixed covariance", pivot)
-                })?;
+            now.mixed_square_roots[j] = (e.mixed_square_root)(problem, previous, now, j)
+                .map_err(|pivot| failure(problem, now, j, "zhu2016 (1)", "mixed covariance", pivot))?;
             for s in 0..now.mixed_points[j].len() {
                 now.mixed_points[j][s] = (e.mixed_point)(problem, previous, now, j, s);
                 now.propagated_points[j][s] = (e.propagated_point)(problem, previous, now, j, s);
@@ -210,16 +204,7 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
         let (e, problem, previous, now) = self.parts();
         if e.draws_points {
             now.predicted_square_roots[j] = (e.predicted_square_root)(problem, previous, now, j)
-                .map_err(|pivot| {
-                    failure(
-                        problem,
-                        now,
-                        j,
-                        "zhu2016 (27)",
-                        "predicted covariance",
-                        pivot,
-                    )
-                })?;
+                .map_err(|pivot| failure(problem, now, j, "zhu2016 (27)", "predicted covariance", pivot))?;
             for s in 0..now.predicted_points[j].len() {
                 now.predicted_points[j][s] = (e.predicted_point)(problem, previous, now, j, s);
                 now.measured_points[j][s] = (e.measured_point)(problem, previous, now, j, s);
@@ -229,16 +214,8 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
         now.innovations[j] = (e.innovation)(problem, previous, now, j);
         now.innovation_covariances[j] = (e.innovation_covariance)(problem, previous, now, j);
         now.cross_covariances[j] = (e.cross_covariance)(problem, previous, now, j);
-        now.gains[j] = (e.gain)(problem, previous, now, j).map_err(|pivot| {
-            failure(
-                problem,
-                now,
-                j,
-                "zhu2016 (51)",
-                "innovation covariance",
-                pivot,
-            )
-        })?;
+        now.gains[j] = (e.gain)(problem, previous, now, j)
+            .map_err(|pivot| failure(problem, now, j, "zhu2016 (51)", "innovation covariance", pivot))?;
         now.updated[j].mean = (e.updated_mean)(problem, previous, now, j);
         now.updated[j].covariance = (e.updated_covariance)(problem, previous, now, j);
         now.log_likelihoods[j] = (e.log_likelihood)(problem, previous, now, j);
@@ -267,8 +244,7 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
     fn combine_prediction(&mut self) {
         let (e, problem, previous, now) = self.parts();
         now.combined_prediction.mean = (e.combined_prediction_mean)(problem, previous, now);
-        now.combined_prediction.covariance =
-            (e.combined_prediction_covariance)(problem, previous, now);
+        now.combined_prediction.covariance = (e.combined_prediction_covariance)(problem, previous, now);
     }
 
     /// The estimate after the measurement, for output.
@@ -287,12 +263,7 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
         &Step<T, N, M>,
         &mut Step<T, N, M>,
     ) {
-        (
-            &self.equations,
-            &self.problem,
-            &self.previous,
-            &mut self.now,
-        )
+        (&self.equations, &self.problem, &self.previous, &mut self.now)
     }
 
     /// A measurement is finite, and its bearings are angles in radians.

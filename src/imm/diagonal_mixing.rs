@@ -22,10 +22,7 @@ use nalgebra::{SMatrix, SVector};
 /// make the weights leave [0, 1] and are left out.
 ///
 /// Evidence: `diagonal_weights_sum_to_one_in_each_component` (symbolic).
-pub fn diagonal_weight<T: Field, const N: usize>(
-    estimates: &[Gaussian<T, N>],
-    i: usize,
-) -> SVector<T, N> {
+pub fn diagonal_weight<T: Field, const N: usize>(estimates: &[Gaussian<T, N>], i: usize) -> SVector<T, N> {
     SVector::from_fn(|l, _| {
         let mut sum = T::zero();
         for estimate in estimates {
@@ -69,9 +66,7 @@ pub fn mixed_covariance<T: Real, const N: usize>(
 pub fn equations<T: Real, const N: usize, const M: usize>() -> Equations<T, N, M> {
     Equations {
         mixed_mean: |_, previous, _, _| mixed_mean(&previous.updated),
-        mixed_covariance: |_, previous, now, j| {
-            mixed_covariance(&previous.updated, &now.mixed[j].mean)
-        },
+        mixed_covariance: |_, previous, now, j| mixed_covariance(&previous.updated, &now.mixed[j].mean),
         ..Equations::kalman()
     }
 }

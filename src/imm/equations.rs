@@ -30,12 +30,10 @@ pub type OfModeAnd<T, const N: usize, const M: usize, V> =
     fn(&Problem<T, N, M>, &Step<T, N, M>, &Step<T, N, M>, usize, usize) -> V;
 
 /// An equation for a value of all modes together: from the problem, the previous step and the current step so far.
-pub type OfAll<T, const N: usize, const M: usize, V> =
-    fn(&Problem<T, N, M>, &Step<T, N, M>, &Step<T, N, M>) -> V;
+pub type OfAll<T, const N: usize, const M: usize, V> = fn(&Problem<T, N, M>, &Step<T, N, M>, &Step<T, N, M>) -> V;
 
 /// A matrix, or the pivot at which it could not be had.
-pub type Factored<T, const R: usize, const C: usize> =
-    Result<SMatrix<T, R, C>, NotPositiveDefinite>;
+pub type Factored<T, const R: usize, const C: usize> = Result<SMatrix<T, R, C>, NotPositiveDefinite>;
 
 /// The equations of a cycle, in the order in which they are evaluated.
 #[derive(Debug, Clone, Copy)]
@@ -98,10 +96,7 @@ pub struct Equations<T, const N: usize, const M: usize> {
 
 impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
     /// Kalman filters: linear motion, linear measurement, no points.
-    #[allow(
-        clippy::too_many_lines,
-        reason = "a table, one short entry an equation"
-    )]
+    #[allow(clippy::too_many_lines, reason = "a table, one short entry an equation")]
     pub fn kalman() -> Self {
         Self {
             draws_points: false,
@@ -115,9 +110,7 @@ impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
                 let predicted = &now.predicted_mode_probabilities[j];
                 probability::mixing_probability(&problem.transition, probabilities, predicted, i, j)
             },
-            mixed_mean: |_, previous, now, j| {
-                mixture_mean(&now.mixing_probabilities[j], &previous.updated)
-            },
+            mixed_mean: |_, previous, now, j| mixture_mean(&now.mixing_probabilities[j], &previous.updated),
             mixed_covariance: |_, previous, now, j| {
                 let mean = &now.mixed[j].mean;
                 mixture_covariance(&now.mixing_probabilities[j], &previous.updated, mean)
@@ -145,19 +138,13 @@ impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
                 let root = &now.predicted_square_roots[j];
                 cubature::point(root, &points(problem)[s], &now.predicted[j].mean)
             },
-            measured_point: |problem, _, now, j, s| {
-                problem.measurement.of(&now.predicted_points[j][s])
-            },
-            predicted_measurement: |problem, _, now, j| {
-                problem.measurement.of(&now.predicted[j].mean)
-            },
+            measured_point: |problem, _, now, j, s| problem.measurement.of(&now.predicted_points[j][s]),
+            predicted_measurement: |problem, _, now, j| problem.measurement.of(&now.predicted[j].mean),
             innovation: |problem, _, now, j| {
                 let Some(z) = &now.measurement else {
                     return SVector::from_fn(|_, _| T::undecided());
                 };
-                problem
-                    .measurement
-                    .difference(z, &now.predicted_measurements[j])
+                problem.measurement.difference(z, &now.predicted_measurements[j])
             },
             innovation_covariance: |problem, _, now, j| {
                 let h = problem.measurement.matrix();
@@ -165,10 +152,7 @@ impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
                 kalman::innovation_covariance(&h, covariance, &problem.measurement_noise)
             },
             cross_covariance: |problem, _, now, j| {
-                kalman::cross_covariance(
-                    &now.predicted[j].covariance,
-                    &problem.measurement.matrix(),
-                )
+                kalman::cross_covariance(&now.predicted[j].covariance, &problem.measurement.matrix())
             },
 
             gain: |_, _, now, j| {
@@ -184,13 +168,9 @@ impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
                 let covariance = &now.predicted[j].covariance;
                 update::updated_covariance(covariance, &now.gains[j], innovation_covariance)
             },
-            log_likelihood: |_, _, now, j| {
-                log_density(&now.innovations[j], &ldl(&now.innovation_covariances[j]))
-            },
+            log_likelihood: |_, _, now, j| log_density(&now.innovations[j], &ldl(&now.innovation_covariances[j])),
 
-            combined_prediction_mean: |_, _, now| {
-                mixture_mean(&now.predicted_mode_probabilities, &now.predicted)
-            },
+            combined_prediction_mean: |_, _, now| mixture_mean(&now.predicted_mode_probabilities, &now.predicted),
             combined_prediction_covariance: |_, _, now| {
                 let mean = &now.combined_prediction.mean;
                 mixture_covariance(&now.predicted_mode_probabilities, &now.predicted, mean)
@@ -215,9 +195,7 @@ impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
     pub fn cubature() -> Self {
         Self {
             draws_points: true,
-            predicted_mean: |problem, _, now, j| {
-                cubature::weighted_mean(weights(problem), &now.propagated_points[j])
-            },
+            predicted_mean: |problem, _, now, j| cubature::weighted_mean(weights(problem), &now.propagated_points[j]),
             predicted_covariance: |problem, _, now, j| {
                 let (points, mean) = (&now.propagated_points[j], &now.predicted[j].mean);
                 let noise = &problem.modes[j].noise;
@@ -291,8 +269,5 @@ fn weights<T, const N: usize, const M: usize>(problem: &Problem<T, N, M>) -> &[T
 
 /// The covariance weights of the problem's rule; none without one.
 fn covariance_weights<T, const N: usize, const M: usize>(problem: &Problem<T, N, M>) -> &[T] {
-    problem
-        .rule
-        .as_ref()
-        .map_or(&[], |rule| &rule.covariance_weights)
+    problem.rule.as_ref().map_or(&[], |rule| &rule.covariance_weights)
 }

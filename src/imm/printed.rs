@@ -12,24 +12,17 @@ use nalgebra::SVector;
 ///
 /// |2πS| already carries (2π)^n_z; with n_z = 2 the exponent −n_z/2 squares the determinant's share, which favours the mode with the
 /// smaller innovation covariance.
-pub fn log_density_21<T: Real, const M: usize>(
-    residual: &SVector<T, M>,
-    covariance: &Ldl<T, M>,
-) -> T {
+pub fn log_density_21<T: Real, const M: usize>(residual: &SVector<T, M>, covariance: &Ldl<T, M>) -> T {
     let dimension = T::integer(i64::try_from(M).unwrap_or(i64::MAX));
     let two_pi = T::pi() * T::integer(2);
     let log_determinant_of_two_pi_s = log_determinant(covariance) + dimension.clone() * two_pi.ln();
-    -(quadratic_form(covariance, residual) + dimension * log_determinant_of_two_pi_s)
-        / T::integer(2)
+    -(quadratic_form(covariance, residual) + dimension * log_determinant_of_two_pi_s) / T::integer(2)
 }
 
 /// zhu2016 (57) read as it stands, with 2π outside the determinant: ln L = −½ νᵀ V⁻¹ ν − ½ ln(2π|V|).
 ///
 /// The matrix under the scalar root has no other reading that gives a number; it is the density only for a scalar measurement.
-pub fn log_density_57<T: Real, const M: usize>(
-    residual: &SVector<T, M>,
-    covariance: &Ldl<T, M>,
-) -> T {
+pub fn log_density_57<T: Real, const M: usize>(residual: &SVector<T, M>, covariance: &Ldl<T, M>) -> T {
     let two_pi = T::pi() * T::integer(2);
     let log_of_two_pi_det = log_determinant(covariance) + two_pi.ln();
     -(quadratic_form(covariance, residual) + log_of_two_pi_det) / T::integer(2)
@@ -38,11 +31,7 @@ pub fn log_density_57<T: Real, const M: usize>(
 /// liu2017 (22) as printed: C = Σᵢ Lʲ Cᵢ, so μʲ = Lʲ Cⱼ / C = Cⱼ / Σᵢ Cᵢ.
 ///
 /// The likelihood stands in every term of the sum with the index j, and cancels.
-pub fn mode_probability_22<T: Real>(
-    log_likelihood: &T,
-    predicted_mode_probabilities: &[T],
-    mode: usize,
-) -> T {
+pub fn mode_probability_22<T: Real>(log_likelihood: &T, predicted_mode_probabilities: &[T], mode: usize) -> T {
     let likelihood = log_likelihood.exp();
     let mut c = T::zero();
     for predicted in predicted_mode_probabilities {
@@ -52,12 +41,9 @@ pub fn mode_probability_22<T: Real>(
 }
 
 /// The cubature filters' table with the likelihood of liu2017 (21) as printed.
-pub fn cubature_with_likelihood_21<T: Real, const N: usize, const M: usize>() -> Equations<T, N, M>
-{
+pub fn cubature_with_likelihood_21<T: Real, const N: usize, const M: usize>() -> Equations<T, N, M> {
     Equations {
-        log_likelihood: |_, _, now, j| {
-            log_density_21(&now.innovations[j], &ldl(&now.innovation_covariances[j]))
-        },
+        log_likelihood: |_, _, now, j| log_density_21(&now.innovations[j], &ldl(&now.innovation_covariances[j])),
         ..Equations::cubature()
     }
 }

@@ -29,11 +29,7 @@ use std::cmp::Ordering;
 /// ```
 ///
 /// Evidence: `without_information_probabilities_follow_the_markov_chain` (exact).
-pub fn predicted_mode_probability<T: Field>(
-    transition: &[Vec<T>],
-    mode_probabilities: &[T],
-    mode: usize,
-) -> T {
+pub fn predicted_mode_probability<T: Field>(transition: &[Vec<T>], mode_probabilities: &[T], mode: usize) -> T {
     let mut sum = T::zero();
     for (row, probability) in transition.iter().zip(mode_probabilities) {
         sum += row[mode].clone() * probability.clone();
@@ -79,14 +75,9 @@ pub fn mixing_probability<T: Field>(
     current: usize,
 ) -> T {
     if predicted_mode_probability.is_zero() {
-        return if previous == current {
-            T::one()
-        } else {
-            T::zero()
-        };
+        return if previous == current { T::one() } else { T::zero() };
     }
-    transition[previous][current].clone() * mode_probabilities[previous].clone()
-        / predicted_mode_probability.clone()
+    transition[previous][current].clone() * mode_probabilities[previous].clone() / predicted_mode_probability.clone()
 }
 
 /// Logarithm of the measurement's likelihood under all modes together — zhu2016 (58), liu2017 (22).
@@ -110,28 +101,29 @@ pub fn mixing_probability<T: Field>(
 /// Evidence: `likelihoods_that_underflow_a_double_leave_the_probabilities_right`,
 /// `printed_normaliser_makes_the_likelihood_cancel`.
 pub fn log_evidence<T: Real>(log_likelihoods: &[T], predicted_mode_probabilities: &[T]) -> T {
-    let mut greatest: Option<T> = None;
+    // (m, Σ exp(term − m)) over the terms so far; a new greatest term rescales the sum.
+    let mut so_far: Option<(T, T)> = None;
     for (log_likelihood, probability) in log_likelihoods.iter().zip(predicted_mode_probabilities) {
-        if !probability.is_zero() {
-            let term = log_likelihood.clone() + probability.ln();
-            let is_greater = greatest
-                .as_ref()
-                .is_none_or(|so_far| term.partial_cmp(so_far) == Some(Ordering::Greater));
-            if is_greater {
-                greatest = Some(term);
+        if probability.is_zero() {
+            continue;
+        }
+        let term = log_likelihood.clone() + probability.ln();
+        so_far = Some(match so_far {
+            None => (term, T::one()),
+            Some((m, sum)) if term.partial_cmp(&m) == Some(Ordering::Greater) => {
+                let rescaled = sum * (m - term.clone()).exp();
+                (term, rescaled + T::one())
             }
-        }
+            Some((m, sum)) => {
+                let share = (term - m.clone()).exp();
+                (m, sum + share)
+            }
+        });
     }
-    let Some(m) = greatest else {
-        return T::undecided();
-    };
-    let mut sum = T::zero();
-    for (log_likelihood, probability) in log_likelihoods.iter().zip(predicted_mode_probabilities) {
-        if !probability.is_zero() {
-            sum += (log_likelihood.clone() + probability.ln() - m.clone()).exp();
-        }
+    match so_far {
+        Some((m, sum)) => m + sum.ln(),
+        None => T::undecided(),
     }
-    m + sum.ln()
 }
 
 /// Mode probability — zhu2016 (58), liu2017 (22).
@@ -160,11 +152,7 @@ pub fn log_evidence<T: Real>(log_likelihoods: &[T], predicted_mode_probabilities
 /// ```
 ///
 /// Evidence: as [`log_evidence`], `permuting_the_modes_permutes_the_answer` (property).
-pub fn mode_probability<T: Real>(
-    log_likelihood: &T,
-    predicted_mode_probability: &T,
-    log_evidence: &T,
-) -> T {
+pub fn mode_probability<T: Real>(log_likelihood: &T, predicted_mode_probability: &T, log_evidence: &T) -> T {
     if predicted_mode_probability.is_zero() {
         return T::zero();
     }

@@ -102,9 +102,7 @@ pub enum InvalidProblem {
         equation: &'static str,
     },
     /// The Kalman filter was given a measurement that is not linear.
-    #[error(
-        "`measurement` is not linear, and the Kalman filter has no other; use a cubature filter (zhu2016 (42))"
-    )]
+    #[error("`measurement` is not linear, and the Kalman filter has no other; use a cubature filter (zhu2016 (42))")]
     NotLinear,
     /// A filter with points was given no rule, or the Kalman filter one.
     #[error("`rule` is {}, but the filter's equations {} (zhu2016 (2))", if *.given { "given" } else { "missing" }, if *.given { "draw no points" } else { "draw points" })]
@@ -113,9 +111,7 @@ pub enum InvalidProblem {
         given: bool,
     },
     /// A rule's points and weights differ in number.
-    #[error(
-        "`rule` has {points} points, {weights} weights and {covariance_weights} covariance weights (zhu2016 (21))"
-    )]
+    #[error("`rule` has {points} points, {weights} weights and {covariance_weights} covariance weights (zhu2016 (21))")]
     RuleLengths {
         /// The number of points.
         points: usize,
@@ -183,14 +179,9 @@ impl<T: Real, const N: usize, const M: usize> Problem<T, N, M> {
     fn check_measurement(&self) -> Result<(), InvalidProblem> {
         match &self.measurement {
             Measurement::Linear(h) => check_finite(h, "measurement.H".into(), "zhu2016 (62)"),
-            Measurement::Polar {
-                position, sensor, ..
-            } => {
+            Measurement::Polar { position, sensor, .. } => {
                 if let Some(&index) = position.iter().find(|&&index| index >= N) {
-                    return Err(InvalidProblem::Position {
-                        index,
-                        dimension: N,
-                    });
+                    return Err(InvalidProblem::Position { index, dimension: N });
                 }
                 if sensor.iter().all(is_finite) {
                     return Ok(());
@@ -220,12 +211,7 @@ impl<T: Real, const N: usize, const M: usize> Problem<T, N, M> {
     }
 }
 
-fn check_length(
-    field: &str,
-    found: usize,
-    expected: usize,
-    equation: &'static str,
-) -> Result<(), InvalidProblem> {
+fn check_length(field: &str, found: usize, expected: usize, equation: &'static str) -> Result<(), InvalidProblem> {
     if found == expected {
         return Ok(());
     }
@@ -239,11 +225,7 @@ fn check_length(
 
 /// Probabilities are finite, not negative and sum to one. The sum may be off by 10⁻¹⁵ an entry: a decimal of 15 digits is, and 1/3
 /// can be written in no better way.
-fn check_probabilities<T: Real>(
-    values: &[T],
-    field: &str,
-    equation: &'static str,
-) -> Result<(), InvalidProblem> {
+fn check_probabilities<T: Real>(values: &[T], field: &str, equation: &'static str) -> Result<(), InvalidProblem> {
     let field = || field.to_owned();
     let mut sum = T::zero();
     for value in values {

@@ -23,6 +23,8 @@ pub enum Measurement<T, const N: usize, const M: usize> {
     ///
     /// Errata: the paper prints Z = H + R, with the matrix added to the noise; H multiplies the state, and R names both the noise
     /// and its covariance.
+    ///
+    /// Evidence: `printed_measurement_adds_noise_to_the_matrix`.
     Linear(SMatrix<T, M, N>),
     /// A measurement in polar coordinates — liu2017 (31): r = √(x² + y²), θ = tan⁻¹(y/x).
     ///
@@ -106,12 +108,7 @@ impl<T: Real, const N: usize, const M: usize> Measurement<T, N, M> {
     /// Why: with Σ w = 1 the two forms are equal when no angle jumps, and only the second is right when one does.
     ///
     /// Evidence: `the_answer_does_not_depend_on_where_the_bearing_is_cut` (property).
-    pub fn mean(
-        &self,
-        weights: &[T],
-        values: &[SVector<T, M>],
-        centre: &SVector<T, M>,
-    ) -> SVector<T, M> {
+    pub fn mean(&self, weights: &[T], values: &[SVector<T, M>], centre: &SVector<T, M>) -> SVector<T, M> {
         let mut mean = SVector::zeros();
         for (weight, value) in weights.iter().zip(values) {
             for component in 0..M {

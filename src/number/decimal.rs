@@ -39,10 +39,7 @@ pub(super) fn read(text: &str) -> Option<BigRational> {
 /// The integer nearest to `value · 10ᵈ`, ties to the even one: all digits of the nearest decimal with d digits after
 /// the point.
 pub(super) fn nearest(value: &BigRational, digits: u32) -> BigInt {
-    nearest_integer(
-        &(value.numer() * BigInt::from(10).pow(digits)),
-        value.denom(),
-    )
+    nearest_integer(&(value.numer() * BigInt::from(10).pow(digits)), value.denom())
 }
 
 /// Writes `scaled / 10ᵈ` as a decimal with d digits after the point.

@@ -40,14 +40,7 @@ use std::ops::Neg;
 ///
 /// The bounds are those under which nalgebra multiplies and adds matrices with shapes in their types.
 pub trait Field:
-    Scalar
-    + Zero
-    + One
-    + ClosedAddAssign
-    + ClosedSubAssign
-    + ClosedMulAssign
-    + ClosedDivAssign
-    + Neg<Output = Self>
+    Scalar + Zero + One + ClosedAddAssign + ClosedSubAssign + ClosedMulAssign + ClosedDivAssign + Neg<Output = Self>
 {
     /// The rational p/q in this number system: exact where it can be, else the nearest.
     fn rational(value: &Rational) -> Self;

@@ -8,12 +8,8 @@
 macro_rules! ring_operators {
     ($number:ty) => {
         $crate::number::operators::binary_operator!($number, Add, add, AddAssign, add_assign, plus);
-        $crate::number::operators::binary_operator!(
-            $number, Sub, sub, SubAssign, sub_assign, minus
-        );
-        $crate::number::operators::binary_operator!(
-            $number, Mul, mul, MulAssign, mul_assign, times
-        );
+        $crate::number::operators::binary_operator!($number, Sub, sub, SubAssign, sub_assign, minus);
+        $crate::number::operators::binary_operator!($number, Mul, mul, MulAssign, mul_assign, times);
 
         impl std::ops::Neg for $number {
             type Output = $number;

@@ -92,8 +92,7 @@ impl Polynomial {
         for (monomial, coefficient) in terms {
             let mut product = T::surd(coefficient);
             for (unknown, &exponent) in monomial {
-                let Some((_, value)) = assignments.iter().find(|(name, _)| **name == **unknown)
-                else {
+                let Some((_, value)) = assignments.iter().find(|(name, _)| **name == **unknown) else {
                     return T::undecided();
                 };
                 product *= num_traits::pow(value.clone(), exponent as usize);
@@ -144,8 +143,7 @@ impl Polynomial {
     /// The polynomial with the other sign.
     fn negative(&self) -> Self {
         let negated = |terms: &Terms| {
-            let term =
-                |(monomial, coefficient): (&Monomial, &Surd)| (monomial.clone(), -coefficient);
+            let term = |(monomial, coefficient): (&Monomial, &Surd)| (monomial.clone(), -coefficient);
             terms.iter().map(term).collect()
         };
         Self {
@@ -193,9 +191,7 @@ impl Polynomial {
             monomial.iter().filter_map(reduced).collect()
         };
         let divided = |terms: &Terms| {
-            let term = |(monomial, coefficient): (&Monomial, &Surd)| {
-                (quotient(monomial), coefficient.clone())
-            };
+            let term = |(monomial, coefficient): (&Monomial, &Surd)| (quotient(monomial), coefficient.clone());
             terms.iter().map(term).collect()
         };
         Self {

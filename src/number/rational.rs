@@ -121,9 +121,7 @@ impl Rational {
     #[must_use]
     pub fn pow(&self, exponent: u32) -> Self {
         // Powers of numbers without a common factor have none either, so the fraction stays in lowest terms.
-        self.map(|value| {
-            BigRational::new_raw(value.numer().pow(exponent), value.denom().pow(exponent))
-        })
+        self.map(|value| BigRational::new_raw(value.numer().pow(exponent), value.denom().pow(exponent)))
     }
 
     /// The sum.
@@ -143,9 +141,7 @@ impl Rational {
 
     /// The quotient; undecided if the divisor is zero.
     fn over(&self, other: &Self) -> Self {
-        self.combine(other, |left, right| {
-            (!right.is_zero()).then(|| left / right)
-        })
+        self.combine(other, |left, right| (!right.is_zero()).then(|| left / right))
     }
 
     /// The number with the other sign.
@@ -161,11 +157,7 @@ impl Rational {
     }
 
     /// A function of two numbers; undecided if either number is, or if the function has no answer.
-    fn combine(
-        &self,
-        other: &Self,
-        function: impl Fn(&BigRational, &BigRational) -> Option<BigRational>,
-    ) -> Self {
+    fn combine(&self, other: &Self, function: impl Fn(&BigRational, &BigRational) -> Option<BigRational>) -> Self {
         let value = match (&self.value, &other.value) {
             (Some(left), Some(right)) => function(left, right),
             _ => None,

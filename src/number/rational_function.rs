@@ -68,10 +68,7 @@ impl RationalFunction {
         }
         let common = numerator.common_monomial(&denominator);
         if common.is_empty() {
-            return Self {
-                numerator,
-                denominator,
-            };
+            return Self { numerator, denominator };
         }
         Self {
             numerator: numerator.without_monomial(&common),
@@ -142,10 +139,7 @@ impl RationalFunction {
 
     /// The quotient; undecided if the divisor is zero.
     fn over(&self, other: &Self) -> Self {
-        self.times(&Self::new(
-            other.denominator.clone(),
-            other.numerator.clone(),
-        ))
+        self.times(&Self::new(other.denominator.clone(), other.numerator.clone()))
     }
 
     /// The function with the other sign.

@@ -9,9 +9,7 @@
 //! (of the result or on the way to it) that does not fit into 64 bits.
 
 use super::operators::{division_operators, ring_operators};
-use super::radicals::{
-    Terms, add_term, bracket, product, quotient, rational_value, root_terms, single_term,
-};
+use super::radicals::{Terms, add_term, bracket, product, quotient, rational_value, root_terms, single_term};
 use super::rational::{nearest_double, sign_of};
 use super::{Field, Rational, Roots, decimal};
 use num_rational::BigRational;

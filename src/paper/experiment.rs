@@ -17,12 +17,7 @@ pub struct Experiment {
 impl Experiment {
     /// Runs a scenario.
     pub fn new(scenario: Scenario, effort: Effort, progress: Progress) -> Self {
-        let runs = run(
-            &scenario,
-            effort.runs.unwrap_or(scenario.runs),
-            effort.seed,
-            progress,
-        );
+        let runs = run(&scenario, effort.runs.unwrap_or(scenario.runs), effort.seed, progress);
         Self { scenario, runs }
     }
 
@@ -36,9 +31,6 @@ impl Experiment {
 
     /// The number of runs in which a contestant could not compute a step.
     pub fn failures(&self, contestant: usize) -> usize {
-        self.runs
-            .iter()
-            .filter(|run| run[contestant].failure.is_some())
-            .count()
+        self.runs.iter().filter(|run| run[contestant].failure.is_some()).count()
     }
 }

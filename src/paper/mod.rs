@@ -96,11 +96,7 @@ impl Paper {
     /// # Errors
     ///
     /// [`InvalidChoice`] never, unless the specification and the code disagree about the scenario's parameters.
-    pub fn judge(
-        self,
-        effort: Effort,
-        progress: Progress,
-    ) -> Result<Vec<Judgement>, InvalidChoice> {
+    pub fn judge(self, effort: Effort, progress: Progress) -> Result<Vec<Judgement>, InvalidChoice> {
         match self {
             Self::Zhu2016 => zhu2016::claims::judge(effort, progress),
             Self::Liu2017 => liu2017::claims::judge(effort, progress),
@@ -112,12 +108,9 @@ impl std::str::FromStr for Paper {
     type Err = String;
 
     fn from_str(key: &str) -> Result<Self, String> {
-        Self::ALL
-            .into_iter()
-            .find(|paper| paper.key() == key)
-            .ok_or_else(|| {
-                let keys: Vec<_> = Self::ALL.iter().map(|paper| paper.key()).collect();
-                format!("there is no paper `{key}`; there are {}", keys.join(", "))
-            })
+        Self::ALL.into_iter().find(|paper| paper.key() == key).ok_or_else(|| {
+            let keys: Vec<_> = Self::ALL.iter().map(|paper| paper.key()).collect();
+            format!("there is no paper `{key}`; there are {}", keys.join(", "))
+        })
     }
 }

@@ -83,9 +83,7 @@ fn one_run(scenario: &Scenario, run: usize, seed: u64) -> Vec<Run> {
     if scenario.paired {
         let shared = draw(run);
         let contestants = scenario.contestants.iter();
-        return contestants
-            .map(|contestant| track(contestant, &shared))
-            .collect();
+        return contestants.map(|contestant| track(contestant, &shared)).collect();
     }
     // Streams of the contestants are interleaved, so that no two share one.
     let contestants = scenario.contestants.iter().enumerate();
@@ -95,6 +93,10 @@ fn one_run(scenario: &Scenario, run: usize, seed: u64) -> Vec<Run> {
 }
 
 /// One contestant on one draw, to its end or to the first step that cannot be computed.
+///
+/// # Panics
+///
+/// When the contestant's problem is not valid: the papers' problems are part of the program, and a test runs all of them.
 pub fn track(contestant: &Contestant, draw: &Draw) -> Run {
     let mut run = Run {
         errors: Vec::with_capacity(draw.truth.len()),

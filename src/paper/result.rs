@@ -92,9 +92,7 @@ impl Comparison<'_> {
     /// The position of a contestant.
     pub fn index(&self, name: &str) -> Option<usize> {
         let contestants = &self.scenario.contestants;
-        contestants
-            .iter()
-            .position(|contestant| contestant.name == name)
+        contestants.iter().position(|contestant| contestant.name == name)
     }
 
     /// The runs that all the given contestants completed.
@@ -112,15 +110,12 @@ impl Comparison<'_> {
         quantity: Quantity,
         chosen: &dyn Fn(usize) -> bool,
     ) -> Vec<f64> {
-        let steps: Vec<usize> = (0..self.scenario.schedule.len())
-            .filter(|k| chosen(*k))
-            .collect();
+        let steps: Vec<usize> = (0..self.scenario.schedule.len()).filter(|k| chosen(*k)).collect();
         let count = steps.len() as f64;
         let squared = |run: &Vec<Run>, k: usize| quantity.squared(&run[contestant].errors[k]);
         match self.scenario.average {
             Average::RootMeanSquare => {
-                let of_run =
-                    |run: &&Vec<Run>| steps.iter().map(|&k| squared(run, k)).sum::<f64>() / count;
+                let of_run = |run: &&Vec<Run>| steps.iter().map(|&k| squared(run, k)).sum::<f64>() / count;
                 runs.iter().map(of_run).collect()
             }
             Average::Mean => {
@@ -132,10 +127,7 @@ impl Comparison<'_> {
                 let figure = rmses.iter().sum::<f64>() / count;
                 // d(mean of RMSE)/d(square of a run at k) = 1/(2 RMSE(k)): the same as for √s̄ with s = figure · Σ e²/RMSE(k).
                 let of_run = |run: &&Vec<Run>| {
-                    let terms = steps
-                        .iter()
-                        .zip(&rmses)
-                        .map(|(&k, rmse)| squared(run, k) / rmse);
+                    let terms = steps.iter().zip(&rmses).map(|(&k, rmse)| squared(run, k) / rmse);
                     figure * terms.sum::<f64>() / count
                 };
                 runs.iter().map(of_run).collect()
@@ -149,12 +141,7 @@ impl Comparison<'_> {
     }
 
     /// The error of a contestant over some of the steps, counted from 0.
-    pub fn error_over(
-        &self,
-        contestant: usize,
-        quantity: Quantity,
-        chosen: &dyn Fn(usize) -> bool,
-    ) -> Estimate {
+    pub fn error_over(&self, contestant: usize, quantity: Quantity, chosen: &dyn Fn(usize) -> bool) -> Estimate {
         let runs = self.completed(&[contestant]);
         root_mean_square(&self.mean_squares(&runs, contestant, quantity, chosen))
     }
@@ -165,13 +152,7 @@ impl Comparison<'_> {
     }
 
     /// As [`Comparison::difference`], over some of the steps, counted from 0.
-    pub fn difference_over(
-        &self,
-        a: usize,
-        b: usize,
-        quantity: Quantity,
-        chosen: &dyn Fn(usize) -> bool,
-    ) -> Estimate {
+    pub fn difference_over(&self, a: usize, b: usize, quantity: Quantity, chosen: &dyn Fn(usize) -> bool) -> Estimate {
         let runs = self.completed(&[a, b]);
         paired_difference(
             &self.mean_squares(&runs, a, quantity, chosen),
@@ -206,10 +187,7 @@ impl Comparison<'_> {
     pub fn greatest_probability_difference(&self, a: usize, b: usize) -> f64 {
         let mut greatest: f64 = 0.0;
         for run in self.completed(&[a, b]) {
-            let steps = run[a]
-                .mode_probabilities
-                .iter()
-                .zip(&run[b].mode_probabilities);
+            let steps = run[a].mode_probabilities.iter().zip(&run[b].mode_probabilities);
             for (p, q) in steps.flat_map(|(step_a, step_b)| step_a.iter().zip(step_b)) {
                 greatest = greatest.max((p - q).abs());
             }
@@ -221,14 +199,8 @@ impl Comparison<'_> {
     pub fn consistency(&self, contestant: usize) -> (Estimate, Estimate) {
         let runs = self.completed(&[contestant]);
         let mean_of = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
-        let nees: Vec<f64> = runs
-            .iter()
-            .map(|run| mean_of(&run[contestant].nees))
-            .collect();
-        let nis: Vec<f64> = runs
-            .iter()
-            .map(|run| mean_of(&run[contestant].nis))
-            .collect();
+        let nees: Vec<f64> = runs.iter().map(|run| mean_of(&run[contestant].nees)).collect();
+        let nis: Vec<f64> = runs.iter().map(|run| mean_of(&run[contestant].nis)).collect();
         (mean(&nees), mean(&nis))
     }
 
@@ -253,8 +225,7 @@ impl Comparison<'_> {
             return Vec::new();
         };
         let runs = self.completed(&[contestant]);
-        let of_run =
-            |run: &&Vec<Run>| detection_delays(&true_modes, &run[contestant].mode_probabilities);
+        let of_run = |run: &&Vec<Run>| detection_delays(&true_modes, &run[contestant].mode_probabilities);
         let by_run: Vec<Vec<Option<usize>>> = runs.iter().map(of_run).collect();
         let changes = by_run.first().map_or(0, Vec::len);
         let of_change = |change: usize| by_run.iter().map(|delays| delays[change]).collect();
@@ -270,9 +241,7 @@ impl Comparison<'_> {
             runs.iter().map(of_run).sum::<f64>() / runs.len() as f64
         };
         let steps = 0..self.scenario.schedule.len();
-        steps
-            .map(|k| (0..modes).map(|j| at(k, j)).collect())
-            .collect()
+        steps.map(|k| (0..modes).map(|j| at(k, j)).collect()).collect()
     }
 }
 
@@ -428,15 +397,9 @@ impl Reproduction {
             choices: scenario.choices.clone(),
             runs,
             steps: scenario.schedule.len(),
-            times: (0..scenario.schedule.len())
-                .map(|k| scenario.time(k))
-                .collect(),
+            times: (0..scenario.schedule.len()).map(|k| scenario.time(k)).collect(),
             seed,
-            motions: scenario
-                .schedule
-                .iter()
-                .map(|motion| motion.name())
-                .collect(),
+            motions: scenario.schedule.iter().map(|motion| motion.name()).collect(),
             filters: contestants.map(|c| performance(&comparison, c)).collect(),
             differences,
         }
@@ -444,14 +407,8 @@ impl Reproduction {
 
     /// The overall error of a filter in a quantity.
     pub fn error(&self, filter: &str, quantity: Quantity) -> Option<Estimate> {
-        let filter = self
-            .filters
-            .iter()
-            .find(|performance| performance.name == filter)?;
-        let figure = filter
-            .errors
-            .iter()
-            .find(|figure| figure.quantity == quantity)?;
+        let filter = self.filters.iter().find(|performance| performance.name == filter)?;
+        let figure = filter.errors.iter().find(|figure| figure.quantity == quantity)?;
         Some(figure.estimate)
     }
 }
@@ -481,12 +438,7 @@ fn performance(comparison: &Comparison, c: usize) -> Performance {
     };
     Performance {
         name: contestant.name.clone(),
-        modes: contestant
-            .problem
-            .modes
-            .iter()
-            .map(|mode| mode.name.clone())
-            .collect(),
+        modes: contestant.problem.modes.iter().map(|mode| mode.name.clone()).collect(),
         points: contestant.points.map(|(points, _)| points),
         effective_points: contestant.points.map(|(_, effective)| effective),
         completed_runs: comparison.runs.len() - failures.len(),
@@ -520,12 +472,7 @@ fn consistency(
         };
     }
     let bounds = bounds(expected, runs.len(), FALSE_ALARM);
-    let mean_at = |k: usize| {
-        runs.iter()
-            .map(|run| values(&run[contestant])[k])
-            .sum::<f64>()
-            / runs.len() as f64
-    };
+    let mean_at = |k: usize| runs.iter().map(|run| values(&run[contestant])[k]).sum::<f64>() / runs.len() as f64;
     let inside = (0..steps)
         .filter(|&k| (bounds.0..=bounds.1).contains(&mean_at(k)))
         .count();
@@ -545,11 +492,7 @@ fn delays(comparison: &Comparison, contestant: usize) -> Vec<Delay> {
     changes
         .zip(&delays)
         .map(|(k, of_runs)| {
-            let detected: Vec<f64> = of_runs
-                .iter()
-                .flatten()
-                .map(|steps| *steps as f64 * interval)
-                .collect();
+            let detected: Vec<f64> = of_runs.iter().flatten().map(|steps| *steps as f64 * interval).collect();
             Delay {
                 time: comparison.scenario.time(k),
                 detected: detected.len(),

@@ -61,15 +61,17 @@ pub struct Contestant {
 
 impl Contestant {
     /// A filter with points: a problem without a rule, and the rule to use.
+    ///
+    /// # Panics
+    ///
+    /// When the rule has no exact form in four dimensions, as a Gauss-Hermite rule has not.
     pub fn with_rule(
         name: &str,
         problem: Problem<f64, 4, 2>,
         rule: &RuleName,
         initial_probabilities: Vec<f64>,
     ) -> Self {
-        let exact = rule
-            .exact(4)
-            .expect("the papers' rules exist in four dimensions");
+        let exact = rule.exact(4).expect("the papers' rules exist in four dimensions");
         let rule = Rule::from_exact(&exact).expect("the rule was made for four dimensions");
         Self {
             name: name.to_owned(),

@@ -242,11 +242,7 @@ impl Specification {
     /// # Errors
     ///
     /// [`InvalidChoice`] when the parameter or the chosen alternative does not exist.
-    pub fn chosen<'a>(
-        &'a self,
-        choices: &Choices,
-        parameter: &str,
-    ) -> Result<&'a str, InvalidChoice> {
+    pub fn chosen<'a>(&'a self, choices: &Choices, parameter: &str) -> Result<&'a str, InvalidChoice> {
         let paper = || self.paper.key.clone();
         let Some(known) = self.parameters.iter().find(|p| p.name == parameter) else {
             let names: Vec<&str> = self.parameters.iter().map(|p| p.name.as_str()).collect();

@@ -106,10 +106,7 @@ pub fn in_words(difference: Estimate, unit: &str) -> String {
 /// The verdict on "the first is smaller", from the differences first − second: confirmed when all are certainly below zero, refuted when
 /// one is certainly above, undecided otherwise.
 pub fn all_below_zero(differences: &[Estimate]) -> Verdict {
-    let signs: Vec<_> = differences
-        .iter()
-        .map(|difference| sign_of(*difference))
-        .collect();
+    let signs: Vec<_> = differences.iter().map(|difference| sign_of(*difference)).collect();
     if signs.iter().all(|sign| *sign == Some(Ordering::Less)) {
         Verdict::Confirmed
     } else if signs.contains(&Some(Ordering::Greater)) {
@@ -121,20 +118,12 @@ pub fn all_below_zero(differences: &[Estimate]) -> Verdict {
 
 /// Proven or refuted, by arithmetic.
 pub fn proven_if(holds: bool) -> Verdict {
-    if holds {
-        Verdict::Proven
-    } else {
-        Verdict::Refuted
-    }
+    if holds { Verdict::Proven } else { Verdict::Refuted }
 }
 
 /// Confirmed or refuted, by runs.
 pub fn confirmed_if(holds: bool) -> Verdict {
-    if holds {
-        Verdict::Confirmed
-    } else {
-        Verdict::Refuted
-    }
+    if holds { Verdict::Confirmed } else { Verdict::Refuted }
 }
 
 /// The verdict on "the first is better", where better means smaller by more than a thousandth: from the difference first − second and the

@@ -35,16 +35,11 @@ pub fn summary(judgements: &[Judgement]) -> String {
     ];
     let counts: Vec<String> = verdicts
         .into_iter()
-        .map(|verdict| {
-            (
-                verdict,
-                judgements.iter().filter(|j| j.verdict == verdict).count(),
-            )
-        })
+        .map(|verdict| (verdict, judgements.iter().filter(|j| j.verdict == verdict).count()))
         .filter(|(_, count)| *count > 0)
         .map(|(verdict, count)| format!("{count} {}", verdict.words()))
         .collect();
-    format!("{} claims: {}", judgements.len(), counts.join(", "))
+    format!("{} claims: {}\n\n", judgements.len(), counts.join(", "))
 }
 
 /// A paragraph broken at words and indented.

@@ -1,8 +1,8 @@
 //! A reproduction for people: published and computed side by side.
 
 use super::{standard_errors, table};
-use crate::paper::result::{Performance, Quantity, Reproduction};
-use crate::paper::specification::{Specification, Table};
+use crate::paper::result::{ErrorFigure, Performance, Quantity, Reproduction};
+use crate::paper::specification::{Choices, Specification, Table};
 use crate::paper::{Paper, liu2017, zhu2016};
 use crate::statistics::estimate::figure;
 use serde::Serialize;
@@ -71,6 +71,34 @@ fn compare(paper: Paper, reproduction: &Reproduction, table: &Table) -> Vec<Comp
     comparisons
 }
 
+/// The errors of a reproduction without their histories: what is kept of the runs under each open choice.
+#[derive(Debug, Clone, Serialize)]
+pub struct Errors<'a> {
+    choices: &'a Choices,
+    filters: Vec<FilterErrors<'a>>,
+}
+
+/// The errors of one filter.
+#[derive(Debug, Clone, Serialize)]
+struct FilterErrors<'a> {
+    name: &'a str,
+    failed_runs: usize,
+    errors: &'a [ErrorFigure],
+}
+
+/// See [`Errors`].
+pub fn errors_of<'a>(reproduction: &'a Reproduction) -> Errors<'a> {
+    let of_filter = |filter: &'a Performance| FilterErrors {
+        name: &filter.name,
+        failed_runs: filter.failures.len(),
+        errors: &filter.errors,
+    };
+    Errors {
+        choices: &reproduction.choices,
+        filters: reproduction.filters.iter().map(of_filter).collect(),
+    }
+}
+
 /// The whole answer of `reproduce` for one paper, as text.
 pub fn text(paper: Paper, reproduction: &Reproduction) -> String {
     let specification = paper.specification();
@@ -82,10 +110,7 @@ pub fn text(paper: Paper, reproduction: &Reproduction) -> String {
             let _ = writeln!(text, "{}", errors(&comparisons));
         }
     }
-    let _ = writeln!(
-        text,
-        "\nPaired differences: the same truth and noise for both filters"
-    );
+    let _ = writeln!(text, "\nPaired differences: the same truth and noise for both filters");
     let _ = writeln!(text, "{}", differences(reproduction));
     let _ = writeln!(text, "\nDelay until the true mode is more likely than not");
     let _ = writeln!(text, "{}", delays(reproduction));
@@ -154,12 +179,7 @@ const ROUNDING: f64 = 1e-11;
 
 fn differences(reproduction: &Reproduction) -> comfy_table::Table {
     let mut table = table(&["", "position (m)", "/ s.e.", "velocity (m/s)", "/ s.e."]);
-    let of = |quantity| {
-        reproduction
-            .differences
-            .iter()
-            .filter(move |d| d.quantity == quantity)
-    };
+    let of = |quantity| reproduction.differences.iter().filter(move |d| d.quantity == quantity);
     for (position, velocity) in of(Quantity::Position).zip(of(Quantity::Velocity)) {
         let mut row = vec![format!("{} − {}", position.filter, position.minus)];
         for difference in [position, velocity] {
@@ -189,11 +209,7 @@ fn delays(reproduction: &Reproduction) -> comfy_table::Table {
     let mut header = vec!["mean (greatest) of the runs, s"];
     header.extend(times.iter().map(String::as_str));
     let mut table = table(&header);
-    for filter in reproduction
-        .filters
-        .iter()
-        .filter(|filter| !filter.delays.is_empty())
-    {
+    for filter in reproduction.filters.iter().filter(|filter| !filter.delays.is_empty()) {
         let mut row = vec![filter.name.clone()];
         for delay in &filter.delays {
             let missed = filter.completed_runs - delay.detected;
@@ -222,8 +238,7 @@ fn consistency(reproduction: &Reproduction) -> comfy_table::Table {
     ];
     let mut table = table(&header);
     for filter in &reproduction.filters {
-        let count =
-            |points: Option<usize>| points.map_or_else(|| "—".to_owned(), |p| p.to_string());
+        let count = |points: Option<usize>| points.map_or_else(|| "—".to_owned(), |p| p.to_string());
         table.add_row([
             filter.name.clone(),
             figure(filter.nees.mean.value),
@@ -242,17 +257,9 @@ fn consistency(reproduction: &Reproduction) -> comfy_table::Table {
 /// The runs that ended early, the first three of each filter by name.
 fn failures(reproduction: &Reproduction) -> String {
     let mut text = String::new();
-    for filter in reproduction
-        .filters
-        .iter()
-        .filter(|filter| !filter.failures.is_empty())
-    {
+    for filter in reproduction.filters.iter().filter(|filter| !filter.failures.is_empty()) {
         let count = filter.failures.len();
-        let _ = writeln!(
-            text,
-            "\n{}: {count} of {} runs failed.",
-            filter.name, reproduction.runs
-        );
+        let _ = writeln!(text, "\n{}: {count} of {} runs failed.", filter.name, reproduction.runs);
         for failed in filter.failures.iter().take(3) {
             let _ = writeln!(text, "  run {}: {}", failed.run, failed.failure);
         }
@@ -276,10 +283,7 @@ pub fn alternatives(paper: Paper, reproductions: &[Reproduction]) -> String {
     for reproduction in reproductions {
         let mut row = vec![reproduction.choices.describe()];
         for name in &names {
-            let filter = reproduction
-                .filters
-                .iter()
-                .find(|f| f.name.starts_with(name));
+            let filter = reproduction.filters.iter().find(|f| f.name.starts_with(name));
             let error = filter.and_then(|f| reproduction.error(&f.name, Quantity::Position));
             let failed = filter.map_or(0, |f| f.failures.len());
             let mut cell = error.map_or_else(|| "—".to_owned(), |error| figure(error.value));
@@ -295,10 +299,7 @@ pub fn alternatives(paper: Paper, reproductions: &[Reproduction]) -> String {
 
 /// The open parameters of a scenario and their alternatives.
 pub fn choices(specification: &Specification) -> String {
-    let mut text = format!(
-        "{}  {}\n",
-        specification.paper.key, specification.paper.title
-    );
+    let mut text = format!("{}  {}\n", specification.paper.key, specification.paper.title);
     for parameter in &specification.parameters {
         let _ = writeln!(
             text,
@@ -311,16 +312,10 @@ pub fn choices(specification: &Specification) -> String {
             } else {
                 " "
             };
-            let _ = writeln!(
-                text,
-                "   {mark} {:<34} {}",
-                alternative.name, alternative.meaning
-            );
+            let _ = writeln!(text, "   {mark} {:<34} {}", alternative.name, alternative.meaning);
         }
     }
-    text.push_str(
-        "\n  * the default. Choose with: immaculate reproduce --set PARAMETER=ALTERNATIVE\n\n",
-    );
+    text.push_str("\n  * the default. Choose with: immaculate reproduce --set PARAMETER=ALTERNATIVE\n\n");
     text
 }
 

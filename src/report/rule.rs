@@ -130,11 +130,9 @@ fn describe_gauss_hermite(m: usize, shown: &str, n: usize) -> Result<Description
     let count = u32::try_from(n).ok().and_then(|n| m.checked_pow(n));
     let points = count.unwrap_or(usize::MAX);
     let failing = 2 * m;
-    let gaussian = (1..failing)
-        .step_by(2)
-        .fold(Rational::new(1, 1), |product, factor| {
-            product * Rational::integer(i64::try_from(factor).unwrap_or(i64::MAX))
-        });
+    let gaussian = (1..failing).step_by(2).fold(Rational::new(1, 1), |product, factor| {
+        product * Rational::integer(i64::try_from(factor).unwrap_or(i64::MAX))
+    });
     let list = nodes
         .iter()
         .map(|node| {
@@ -186,10 +184,7 @@ pub fn text(description: &Description) -> String {
         description.sum_of_weights, description.sum_of_absolute_weights
     );
     let _ = match (&description.proven_degree, &description.first_wrong_moment) {
-        (Some(degree), Some(_)) => writeln!(
-            text,
-            "  degree {degree}, proven by the exact moments of all monomials"
-        ),
+        (Some(degree), Some(_)) => writeln!(text, "  degree {degree}, proven by the exact moments of all monomials"),
         (None, Some(_)) => writeln!(text, "  no degree: not even the weights' sum is right"),
         (Some(degree), None) => writeln!(text, "  degree {degree} or more"),
         (None, None) => writeln!(
@@ -216,11 +211,7 @@ pub fn text(description: &Description) -> String {
     }
     let mut table = table(&["", "weight", "", "coordinates", ""]);
     for (s, point) in description.list.iter().enumerate() {
-        let decimals: Vec<String> = point
-            .coordinates_decimal
-            .iter()
-            .map(|x| format!("{x:.6}"))
-            .collect();
+        let decimals: Vec<String> = point.coordinates_decimal.iter().map(|x| format!("{x:.6}")).collect();
         let weight = match &point.covariance_weight {
             Some(other) => format!("{} (covariances {other})", point.weight),
             None => point.weight.clone(),

@@ -84,6 +84,8 @@ pub fn nodes(m: usize) -> Result<Vec<Node>, InvalidRule> {
 }
 
 /// The rule's moment Σ w x^power in one coordinate, exactly.
+///
+/// Source: the definition of a rule.
 pub fn moment(nodes: &[Node], power: usize) -> Surd {
     let mut sum = Surd::zero();
     for node in nodes {

@@ -4,6 +4,13 @@
 //! ∫ g(x) N(x; 0, I) dx  ≈  Σₛ wₛ g(ξₛ)
 //! ```
 //!
+//! liu2017 writes the integral with another weight and splits it into a radius and a direction, x = r s with sᵀs = 1 —
+//! liu2017 (2), (3). It is the same integral in the variable √2 x, which makes a radius √(n/2 + 1) there a √(n + 2) here:
+//!
+//! ```text
+//! ∫ f(x) e^(−xᵀx) dx = ∫ r^(n−1) e^(−r²) ∫ f(r s) dσ(s) dr,     f(x) = g(√2 x) / π^(n/2)
+//! ```
+//!
 //! After this folder the reader knows every rule that the papers use, where its points come from, and how far it is exact.
 //! A rule is written down once, in exact form, straight from its paper ([`ExactRule`]: coordinates are surds, weights
 //! rationals), proven in that form ([`moment`] for one dimension at a time, [`sphere`] for every dimension at once), and
@@ -138,10 +145,7 @@ impl ExactRule {
     /// The number of points whose weight is not zero.
     pub fn effective_points(&self) -> usize {
         let zero = Rational::new(0, 1);
-        self.weights
-            .iter()
-            .filter(|weight| **weight != zero)
-            .count()
+        self.weights.iter().filter(|weight| **weight != zero).count()
     }
 
     /// The number of different places at which the points stand.

@@ -128,6 +128,8 @@ pub fn exactness(rule: &ExactRule, up_to: usize) -> Exactness {
 
 /// The first monomial of a degree that the rule gets wrong, if there is one. The powers of earlier coordinates come first:
 /// x₁⁴ before x₁²x₂².
+///
+/// Source: the definition of the degree of a rule.
 pub fn wrong_moment_of_degree(rule: &ExactRule, degree: usize) -> Option<WrongMoment> {
     let terms: Vec<Surd> = rule.weights.iter().map(Surd::rational).collect();
     search(rule, &mut vec![0; rule.dimension], 0, degree, &terms)
@@ -166,13 +168,7 @@ fn search(
     }
     for power in (0..=remaining).rev() {
         exponents[coordinate] = power;
-        let wrong = search(
-            rule,
-            exponents,
-            coordinate + 1,
-            remaining - power,
-            &powers[power],
-        );
+        let wrong = search(rule, exponents, coordinate + 1, remaining - power, &powers[power]);
         if wrong.is_some() {
             return wrong;
         }

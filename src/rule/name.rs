@@ -93,9 +93,7 @@ impl FromStr for RuleName {
             "simplex-5-printed-11" => Self::SimplexPrinted11,
             "simplex-5-printed-16" => Self::SimplexPrinted16,
             _ => {
-                return Err(InvalidRule::UnknownName {
-                    name: name.to_owned(),
-                });
+                return Err(InvalidRule::UnknownName { name: name.to_owned() });
             }
         })
     }

@@ -118,15 +118,13 @@ pub fn vertices(n: usize) -> Vec<Vec<Surd>> {
 /// The square of a vertex's coordinate m < j in liu2017 (7): (n + 1) / (n(n − m + 2)(n − m + 1)).
 pub fn below_diagonal_squared<T: Field>(n: &T, m: &T) -> T {
     let n_minus_m = n.clone() - m.clone();
-    (n.clone() + T::one())
-        / (n.clone() * (n_minus_m.clone() + T::integer(2)) * (n_minus_m + T::one()))
+    (n.clone() + T::one()) / (n.clone() * (n_minus_m.clone() + T::integer(2)) * (n_minus_m + T::one()))
 }
 
 /// The square of a vertex's coordinate m = j in liu2017 (7): (n + 1)(n − j + 1) / (n(n − j + 2)).
 pub fn on_diagonal_squared<T: Field>(n: &T, j: &T) -> T {
     let n_minus_j = n.clone() - j.clone();
-    (n.clone() + T::one()) * (n_minus_j.clone() + T::one())
-        / (n.clone() * (n_minus_j + T::integer(2)))
+    (n.clone() + T::one()) * (n_minus_j.clone() + T::one()) / (n.clone() * (n_minus_j + T::integer(2)))
 }
 
 /// The midpoints of the simplex's edges, projected to the sphere — liu2017 (6).
@@ -142,8 +140,7 @@ pub fn on_diagonal_squared<T: Field>(n: &T, j: &T) -> T {
 pub fn edge_midpoints(n: usize) -> Vec<Vec<Surd>> {
     let vertices = vertices(n);
     let n_exact = dimension_as_rational(n);
-    let scale =
-        Surd::root(&(n_exact.clone() / (Rational::new(2, 1) * (n_exact - Rational::new(1, 1)))));
+    let scale = Surd::root(&(n_exact.clone() / (Rational::new(2, 1) * (n_exact - Rational::new(1, 1)))));
     let mut midpoints = Vec::new();
     for i in 0..=n {
         for l in i + 1..=n {
@@ -200,9 +197,11 @@ pub fn sphere_edge_weight<T: Field>(n: &T) -> T {
 ///
 /// Why: two nodes must match l = 0, 2, 4: ω₁ + ω₂ = 1, ω₂r₂² = n/2, ω₂r₂⁴ = (n/2)(n/2 + 1).
 ///
-/// Errata: (9) prints r₂⁰ for r₂² in its second row; (10) names both radii r₁ and its sentence calls the rule third-degree.
+/// Errata: (9) prints r₂⁰ for r₂² in its second row; (10) names both radii r₁ and its sentence calls the rule third-degree. The
+/// sphere's surface Aₙ = 2√(πⁿ)/Γ(n/2), which cancels here, is printed as an expression that is 2 for every n.
 ///
-/// Evidence: `radial_rule_matches_the_moments_zero_two_and_four` (symbolic), `printed_radial_second_moment_row_is_violated`.
+/// Evidence: `radial_rule_matches_the_moments_zero_two_and_four` (symbolic), `printed_radial_second_moment_row_is_violated`,
+/// `printed_surface_area_is_two_in_every_dimension`.
 pub fn radial_rule<T: Field>(n: &T) -> (T, T, T) {
     let n_plus_2 = n.clone() + T::integer(2);
     let centre = T::integer(2) / n_plus_2.clone();
@@ -243,6 +242,5 @@ pub fn edge_weight<T: Field>(n: &T) -> T {
     let n_minus_1 = n.clone() - T::one();
     let n_plus_1 = n.clone() + T::one();
     let n_plus_2 = n.clone() + T::integer(2);
-    T::integer(2) * n_minus_1.clone() * n_minus_1
-        / (n_plus_1.clone() * n_plus_1 * n_plus_2.clone() * n_plus_2)
+    T::integer(2) * n_minus_1.clone() * n_minus_1 / (n_plus_1.clone() * n_plus_1 * n_plus_2.clone() * n_plus_2)
 }

@@ -47,8 +47,7 @@ pub fn gegenbauer<T: Field>(n: &T, k: usize, squared: &T) -> T {
     let mut even = T::one(); // P₂ᵢ
     let mut odd_over_t = T::one(); // P₂ᵢ₊₁ / t
     for i in 1..=k {
-        even = (step(2 * (2 * i - 1)) * squared.clone() * odd_over_t.clone() - m(2 * i - 1) * even)
-            / step(2 * i - 1);
+        even = (step(2 * (2 * i - 1)) * squared.clone() * odd_over_t.clone() - m(2 * i - 1) * even) / step(2 * i - 1);
         odd_over_t = (step(4 * i) * even.clone() - m(2 * i) * odd_over_t) / step(2 * i);
     }
     even
@@ -95,6 +94,8 @@ pub struct SphericalRule<T> {
 impl<T: Field> SphericalRule<T> {
     /// The degree of the rule, at most 7: the weights sum to one, and then each even degree adds one radial moment and one
     /// harmonic sum. `None` when the weights do not sum to one.
+    ///
+    /// Source: the head of this file.
     pub fn degree(&self) -> Option<usize> {
         if self.centre.clone() + self.sphere.clone() != T::one() {
             return None;
@@ -162,8 +163,7 @@ pub fn on_axes_and_diagonals<T: Field>(n: &T, diagonal_weight: &T) -> SphericalR
     let axis_points = integer(2) * n.clone();
     let diagonal_points = integer(2) * n.clone() * (n.clone() - T::one());
     let axis_weight = fifth_degree::axis_weight(n);
-    let sphere = axis_points.clone() * axis_weight.clone()
-        + diagonal_points.clone() * diagonal_weight.clone();
+    let sphere = axis_points.clone() * axis_weight.clone() + diagonal_points.clone() * diagonal_weight.clone();
     let axis = axis_weight / sphere.clone();
     let diagonal = diagonal_weight.clone() / sphere.clone();
 
@@ -181,16 +181,8 @@ pub fn on_axes_and_diagonals<T: Field>(n: &T, diagonal_weight: &T) -> SphericalR
     let equal = integer(2);
     // Both orders of (axis, diagonal) are counted by the factor two.
     let products = vec![
-        pair(
-            axis_points.clone() * equal.clone(),
-            axis_axis.clone(),
-            T::one(),
-        ),
-        pair(
-            axis_points.clone() * rest(&axis_points, &equal),
-            axis_axis,
-            T::zero(),
-        ),
+        pair(axis_points.clone() * equal.clone(), axis_axis.clone(), T::one()),
+        pair(axis_points.clone() * rest(&axis_points, &equal), axis_axis, T::zero()),
         pair(
             integer(2) * axis_points.clone() * sharing_axis.clone(),
             axis_diagonal.clone(),
@@ -258,11 +250,7 @@ pub fn on_simplex<T: Field>(n: &T, edge_weight: &T) -> SphericalRule<T> {
     let two_n = integer(2) * n.clone();
     // Both orders of (vertex, midpoint) are counted by the factor two.
     let products = vec![
-        pair(
-            vertices.clone() * integer(2),
-            vertex_vertex.clone(),
-            T::one(),
-        ),
+        pair(vertices.clone() * integer(2), vertex_vertex.clone(), T::one()),
         pair(
             vertices.clone() * two_n.clone(),
             vertex_vertex,
@@ -278,11 +266,7 @@ pub fn on_simplex<T: Field>(n: &T, edge_weight: &T) -> SphericalRule<T> {
             vertex_midpoint,
             integer(2) / (n.clone() * n_minus_1.clone()),
         ),
-        pair(
-            midpoints.clone() * integer(2),
-            midpoint_midpoint.clone(),
-            T::one(),
-        ),
+        pair(midpoints.clone() * integer(2), midpoint_midpoint.clone(), T::one()),
         pair(
             midpoints.clone() * integer(4) * n_minus_1.clone(),
             midpoint_midpoint.clone(),

@@ -26,7 +26,9 @@ impl Parameters {
         }
     }
 
-    /// κ = 3 − n, the value of Julier and Uhlmann for Gaussian densities; negative for n > 3.
+    /// κ = 3 − n, the value for Gaussian densities; negative for n > 3.
+    ///
+    /// Source: Julier and Uhlmann 2004.
     pub fn for_gaussian(n: usize) -> Self {
         Self::of_kappa(Rational::new(3, 1) - dimension_as_rational(n))
     }

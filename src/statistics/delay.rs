@@ -7,6 +7,9 @@
 /// `true_modes[k]` and `probabilities[k]` are those of step k + 1. A change at which the motion of the step differs from the one before
 /// has a delay of 0 when the probability is above one half at that very step, and none when the next change or the end comes first.
 ///
+/// Source: both papers speak of quick switching, zhu2016 in its section 4 and liu2017 in its section 4.2, and neither says how it is
+/// measured. One half is where the true mode becomes more likely than all others together.
+///
 /// # Examples
 ///
 /// ```
@@ -28,11 +31,7 @@ pub fn detection_delays(true_modes: &[usize], probabilities: &[Vec<f64>]) -> Vec
         .enumerate()
         .map(|(change, &start)| {
             let end = changes.get(change + 1).copied().unwrap_or(true_modes.len());
-            (start..end).position(|k| {
-                probabilities[k]
-                    .get(true_modes[k])
-                    .is_some_and(|p| *p > 0.5)
-            })
+            (start..end).position(|k| probabilities[k].get(true_modes[k]).is_some_and(|p| *p > 0.5))
         })
         .collect()
 }

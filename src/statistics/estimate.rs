@@ -29,6 +29,8 @@ impl Estimate {
 /// x̄ = (1/M) Σ xₘ,   SE² = Σ (xₘ − x̄)² / (M (M − 1))
 /// ```
 ///
+/// Source: the variance of a mean of M independent values is an M-th of theirs, which Σ (xₘ − x̄)² / (M − 1) estimates without bias.
+///
 /// # Examples
 ///
 /// ```
@@ -51,7 +53,7 @@ pub fn mean(values: &[f64]) -> Estimate {
 /// A = √s̄,   SE(A) = SE(s̄) / (2A)
 /// ```
 ///
-/// Why: first-order propagation through the square root.
+/// Source: the delta method, dA/ds̄ = 1/(2A).
 pub fn root_mean_square(mean_squares: &[f64]) -> Estimate {
     let mean = mean(mean_squares);
     let value = mean.value.sqrt();
@@ -67,8 +69,9 @@ pub fn root_mean_square(mean_squares: &[f64]) -> Estimate {
 /// SE(A − B) = SE of the mean of  aₘ/(2A) − bₘ/(2B)
 /// ```
 ///
+/// Source: the delta method, as in [`root_mean_square`].
+///
 /// Why: both filters saw the same truth and the same noise, so their errors are correlated and most of the chance cancels run by run.
-/// First-order propagation as in [`root_mean_square`].
 ///
 /// # Examples
 ///
@@ -97,16 +100,16 @@ pub fn paired_difference(a: &[f64], b: &[f64]) -> Estimate {
 
 /// A figure with four significant digits, or a dash where there is none.
 pub fn figure(value: f64) -> String {
+    // With i decimals, four digits are significant from LEAST[i] on.
+    const LEAST: [f64; 8] = [1e3, 1e2, 1e1, 1.0, 1e-1, 1e-2, 1e-3, 1e-4];
     if !value.is_finite() {
         return "—".to_owned();
     }
     if value == 0.0 {
         return "0".to_owned();
     }
-    let magnitude = value.abs().log10().floor();
-    if !(-4.0..6.0).contains(&magnitude) {
-        return format!("{value:.2e}");
+    match LEAST.iter().position(|least| value.abs() >= *least) {
+        Some(decimals) if value.abs() < 1e6 => format!("{value:.decimals$}"),
+        _ => format!("{value:.2e}"),
     }
-    let decimals = (3.0 - magnitude).max(0.0) as usize;
-    format!("{value:.decimals$}")
 }

@@ -14,12 +14,8 @@ use crate::paper::experiment::Experiment;
 use crate::paper::monte_carlo::{Generator, Progress, run, track};
 use crate::paper::result::Quantity;
 use crate::paper::scenario::{Contestant, Draw, Motion, Scenario};
-use crate::paper::specification::{
-    Choices, InvalidChoice, Specification, liu2017 as specification,
-};
-use crate::paper::verdict::{
-    Judgement, RELEVANT, Verdict, all_of, better_by_a_thousandth, in_words, proven_if,
-};
+use crate::paper::specification::{Choices, InvalidChoice, Specification, liu2017 as specification};
+use crate::paper::verdict::{Judgement, RELEVANT, Verdict, all_of, better_by_a_thousandth, in_words, proven_if};
 use crate::rule::moment::{exactness, gaussian_moment, rule_moment};
 use crate::rule::sphere::{every_dimension, on_simplex};
 use crate::rule::{RuleName, fifth_degree, simplex};
@@ -77,21 +73,12 @@ fn better_than_others(
     for other in OTHERS {
         let _ = write!(evidence, " {}:", printed.scenario.contestants[other].name);
         for &quantity in quantities {
-            let unit = if quantity == Quantity::Velocity {
-                "m/s"
-            } else {
-                "m"
-            };
+            let unit = if quantity == Quantity::Velocity { "m/s" } else { "m" };
             let difference = comparison.difference_over(IMM5THSSRCKF, other, quantity, chosen);
             let error = comparison.error_over(other, quantity, chosen);
             verdicts.push(better_by_a_thousandth(difference, error));
             let relative = difference.value / error.value;
-            let _ = write!(
-                evidence,
-                " {}, {} of it;",
-                in_words(difference, unit),
-                figure(relative)
-            );
+            let _ = write!(evidence, " {}, {} of it;", in_words(difference, unit), figure(relative));
         }
     }
     (all_of(&verdicts), evidence)
@@ -104,23 +91,14 @@ fn better_accuracy(s: &Specification, printed: &Experiment) -> Judgement {
     let published: Vec<String> = rows
         .map(|row| format!("{:+.1} %", 100.0 * (row.values[3] / row.values[0] - 1.0)))
         .collect();
-    let _ = write!(
-        evidence,
-        " published against IMMUKF: {}.",
-        published.join(" and ")
-    );
+    let _ = write!(evidence, " published against IMMUKF: {}.", published.join(" and "));
     s.judgement("liu2017-better-accuracy", verdict, evidence)
 }
 
 /// The mean delay of a filter over all switches and runs, s.
 fn mean_delay(printed: &Experiment, contestant: usize) -> f64 {
     let delays = printed.comparison().delays(contestant);
-    let detected: Vec<f64> = delays
-        .iter()
-        .flatten()
-        .flatten()
-        .map(|delay| *delay as f64)
-        .collect();
+    let detected: Vec<f64> = delays.iter().flatten().flatten().map(|delay| *delay as f64).collect();
     detected.iter().sum::<f64>() / detected.len() as f64
 }
 
@@ -152,11 +130,7 @@ fn quicker_switching(s: &Specification, printed: &Experiment) -> Judgement {
         );
     }
     end_sentence(&mut evidence);
-    let verdict = if quicker {
-        Verdict::Confirmed
-    } else {
-        Verdict::Refuted
-    };
+    let verdict = if quicker { Verdict::Confirmed } else { Verdict::Refuted };
     s.judgement("liu2017-quicker-switching", verdict, evidence)
 }
 
@@ -182,19 +156,14 @@ fn fifth_degree_switching(s: &Specification, printed: &Experiment) -> Judgement 
         figure(across),
         if faster { "" } else { "not " },
     );
-    let verdict = if faster {
-        Verdict::Confirmed
-    } else {
-        Verdict::Refuted
-    };
+    let verdict = if faster { Verdict::Confirmed } else { Verdict::Refuted };
     s.judgement("liu2017-fifth-degree-switching", verdict, evidence)
 }
 
 fn no_divergence(s: &Specification, printed: &Experiment) -> Judgement {
     let comparison = printed.comparison();
     let mut bounded = true;
-    let mut evidence =
-        String::from("Mean NEES (4 expected) and greatest position error of any run:");
+    let mut evidence = String::from("Mean NEES (4 expected) and greatest position error of any run:");
     for (c, contestant) in printed.scenario.contestants.iter().enumerate() {
         let (nees, _) = comparison.consistency(c);
         let greatest = comparison.greatest_position_error(c);
@@ -213,11 +182,7 @@ fn no_divergence(s: &Specification, printed: &Experiment) -> Judgement {
     } else {
         " a run fails, or an error passes ten deviations of a measured position."
     });
-    let verdict = if bounded {
-        Verdict::Confirmed
-    } else {
-        Verdict::Refuted
-    };
+    let verdict = if bounded { Verdict::Confirmed } else { Verdict::Refuted };
     s.judgement("liu2017-no-divergence", verdict, evidence)
 }
 
@@ -234,45 +199,28 @@ fn counted_points() -> [usize; 4] {
 
 /// The values of a row of the second table.
 fn table_2<'a>(s: &'a Specification, name: &str) -> &'a [f64] {
-    let row = s.tables[1]
-        .rows
-        .iter()
-        .find(|row| row.name.starts_with(name));
+    let row = s.tables[1].rows.iter().find(|row| row.name.starts_with(name));
     row.map_or(&[], |row| &row.values)
 }
 
 fn point_counts(s: &Specification) -> Judgement {
     let counted = counted_points();
     let published = table_2(s, "Number of Points");
-    let equal = counted
-        .iter()
-        .zip(published)
-        .all(|(counted, published)| *counted as f64 == *published);
+    let counted_as_published: Vec<f64> = counted.iter().map(|points| *points as f64).collect();
+    let equal = counted_as_published == published;
     let evidence = format!("Counted {counted:?}, published {published:?}.");
     s.judgement("liu2017-point-counts", proven_if(equal), evidence)
 }
 
 fn time_proportional_to_points(s: &Specification) -> Judgement {
-    let (points, times) = (
-        table_2(s, "Number of Points"),
-        table_2(s, "Computational Time"),
-    );
-    let per_point: Vec<f64> = times
-        .iter()
-        .zip(points)
-        .map(|(time, points)| time / points)
-        .collect();
+    let (points, times) = (table_2(s, "Number of Points"), table_2(s, "Computational Time"));
+    let per_point: Vec<f64> = times.iter().zip(points).map(|(time, points)| time / points).collect();
     let count = points.len() as f64;
     let mean = |values: &[f64]| values.iter().sum::<f64>() / count;
     let (mean_points, mean_time) = (mean(points), mean(times));
     let pairs = points.iter().zip(times);
-    let covariance: f64 = pairs
-        .map(|(p, t)| (p - mean_points) * (t - mean_time))
-        .sum();
-    let variance: f64 = points
-        .iter()
-        .map(|p| (p - mean_points) * (p - mean_points))
-        .sum();
+    let covariance: f64 = pairs.map(|(p, t)| (p - mean_points) * (t - mean_time)).sum();
+    let variance: f64 = points.iter().map(|p| (p - mean_points) * (p - mean_points)).sum();
     let slope = covariance / variance;
     let intercept = mean_time - slope * mean_points;
     let greatest = per_point.iter().copied().fold(f64::MIN, f64::max);
@@ -291,9 +239,7 @@ fn time_proportional_to_points(s: &Specification) -> Judgement {
 }
 
 fn slightly_cheaper(s: &Specification) -> Judgement {
-    let fewer: Vec<usize> = (2..=10)
-        .filter(|&n| n * n + 3 * n + 3 < 2 * n * n + 1)
-        .collect();
+    let fewer: Vec<usize> = (2..=10).filter(|&n| n * n + 3 * n + 3 < 2 * n * n + 1).collect();
     let [_, _, fifth, simplex] = counted_points();
     let times = table_2(s, "Computational Time");
     let evidence = format!(
@@ -312,19 +258,13 @@ fn slightly_cheaper(s: &Specification) -> Judgement {
 fn degree_five(s: &Specification) -> Judgement {
     let n = every_dimension();
     let degree = on_simplex(&n, &simplex::edge_weight(&n)).degree();
-    let failure = simplex::simplex(4)
-        .ok()
-        .and_then(|rule| exactness(&rule, 6).failure);
+    let failure = simplex::simplex(4).ok().and_then(|rule| exactness(&rule, 6).failure);
     let evidence = format!(
         "Symbolic, with the corrected weights and n unknown: the degree is {}. At n = 4 the first wrong moment is {}.",
         degree.map_or("none".to_owned(), |degree| degree.to_string()),
         failure.map_or("none".to_owned(), |failure| failure.to_string()),
     );
-    s.judgement(
-        "liu2017-degree-five",
-        proven_if(degree == Some(5)),
-        evidence,
-    )
+    s.judgement("liu2017-degree-five", proven_if(degree == Some(5)), evidence)
 }
 
 fn higher_accuracy_than_fifth_degree(s: &Specification, printed: &Experiment) -> Judgement {
@@ -336,26 +276,18 @@ fn higher_accuracy_than_fifth_degree(s: &Specification, printed: &Experiment) ->
         [3, 3, 0, 0],
         [5, 0, 0, 1],
     ];
-    let mut evidence =
-        String::from("Exact moments of degree six at n = 4, fifth-degree, simplex, Gaussian:");
+    let mut evidence = String::from("Exact moments of degree six at n = 4, fifth-degree, simplex, Gaussian:");
     let (mut closer, mut farther) = (0, 0);
     if let (Ok(fifth), Ok(simplex)) = (fifth_degree::fifth_degree(4), simplex::simplex(4)) {
         for exponents in monomials {
             let name = crate::rule::moment::monomial_name(&exponents);
-            let values = [
-                rule_moment(&fifth, &exponents),
-                rule_moment(&simplex, &exponents),
-            ];
+            let values = [rule_moment(&fifth, &exponents), rule_moment(&simplex, &exponents)];
             let gaussian = gaussian_moment(&exponents);
-            let [of_fifth, of_simplex] = [&values[0], &values[1]]
-                .map(|value| (value.clone() - Surd::rational(&gaussian)).abs());
+            let [of_fifth, of_simplex] =
+                [&values[0], &values[1]].map(|value| (value.clone() - Surd::rational(&gaussian)).abs());
             closer += usize::from(of_simplex < of_fifth);
             farther += usize::from(of_simplex > of_fifth);
-            let _ = write!(
-                evidence,
-                " {name}: {}, {}, {gaussian};",
-                values[0], values[1]
-            );
+            let _ = write!(evidence, " {name}: {}, {}, {gaussian};", values[0], values[1]);
         }
     }
     let comparison = printed.comparison();
@@ -367,11 +299,7 @@ fn higher_accuracy_than_fifth_degree(s: &Specification, printed: &Experiment) ->
         in_words(difference, "m"),
     );
     let verdict = better_by_a_thousandth(difference, error);
-    s.judgement(
-        "liu2017-higher-accuracy-than-fifth-degree",
-        verdict,
-        evidence,
-    )
+    s.judgement("liu2017-higher-accuracy-than-fifth-degree", verdict, evidence)
 }
 
 /// The covariance of a position converted from a range and a bearing, to first order in their noise.
@@ -391,11 +319,10 @@ fn converted_covariance(position: &Vector2<f64>) -> Matrix2<f64> {
 /// Kalman filters on converted measurements in the paper's modes: the noise of a measurement is that of its own conversion.
 fn converted_measurement_filter(contestant: &Contestant) -> Contestant {
     let mut converted = contestant.clone();
-    converted.name = "IMM with converted measurements".to_owned();
+    "IMM with converted measurements".clone_into(&mut converted.name);
     converted.problem.rule = None;
     converted.points = None;
-    converted.problem.measurement =
-        Measurement::Linear(matrix![1.0, 0.0, 0.0, 0.0; 0.0, 0.0, 1.0, 0.0]);
+    converted.problem.measurement = Measurement::Linear(matrix![1.0, 0.0, 0.0, 0.0; 0.0, 0.0, 1.0, 0.0]);
     converted.equations = Equations {
         innovation_covariance: |problem, _, now, j| {
             let noise = now
@@ -410,20 +337,12 @@ fn converted_measurement_filter(contestant: &Contestant) -> Contestant {
     converted
 }
 
-fn linear_imm_cannot(
-    s: &Specification,
-    printed: &Experiment,
-    effort: Effort,
-    progress: Progress,
-) -> Judgement {
+fn linear_imm_cannot(s: &Specification, printed: &Experiment, effort: Effort, progress: Progress) -> Judgement {
     let filter = converted_measurement_filter(&printed.scenario.contestants[IMM5THSSRCKF]);
     let one_run = |run: usize| {
         let stream = u64::try_from(run).unwrap_or(u64::MAX);
-        let draw = printed
-            .scenario
-            .draw(&mut Generator::new(effort.seed, stream));
-        let position =
-            |z: &Vector2<f64>| Vector2::new(z[0] * libm::cos(z[1]), z[0] * libm::sin(z[1]));
+        let draw = printed.scenario.draw(&mut Generator::new(effort.seed, stream));
+        let position = |z: &Vector2<f64>| Vector2::new(z[0] * libm::cos(z[1]), z[0] * libm::sin(z[1]));
         let converted = Draw {
             measurements: draw.measurements.iter().map(position).collect(),
             ..draw
@@ -431,10 +350,7 @@ fn linear_imm_cannot(
         progress();
         track(&filter, &converted)
     };
-    let runs: Vec<_> = (0..printed.runs.len())
-        .into_par_iter()
-        .map(one_run)
-        .collect();
+    let runs: Vec<_> = (0..printed.runs.len()).into_par_iter().map(one_run).collect();
     let failed = runs.iter().filter(|run| run.failure.is_some()).count();
     let mean_square = |errors: &[Vector4<f64>]| {
         errors
@@ -479,11 +395,7 @@ fn cheaper_in_high_dimension(s: &Specification) -> Judgement {
          towards one half; the third-degree rule, with 2n points, is cheaper than both.",
         ratios.join(", "),
     );
-    s.judgement(
-        "liu2017-cheaper-in-high-dimension",
-        proven_if(falling),
-        evidence,
-    )
+    s.judgement("liu2017-cheaper-in-high-dimension", proven_if(falling), evidence)
 }
 
 fn outperforms_in_manoeuvres(s: &Specification, printed: &Experiment) -> Judgement {
@@ -503,18 +415,13 @@ fn constant_velocity(s: &Specification, printed: &Experiment) -> Judgement {
     let straight = |k: usize| schedule[k] == Motion::Straight;
     let comparison = printed.comparison();
     let same = OTHERS.iter().all(|&other| {
-        let difference =
-            comparison.difference_over(IMM5THSSRCKF, other, Quantity::Position, &straight);
+        let difference = comparison.difference_over(IMM5THSSRCKF, other, Quantity::Position, &straight);
         let error = comparison.error_over(other, Quantity::Position, &straight);
         (difference.value.abs() + 4.0 * difference.standard_error) < RELEVANT * error.value
     });
     let (_, mut evidence) = better_than_others(printed, &[Quantity::Position], &straight);
     end_sentence(&mut evidence);
-    let verdict = if same {
-        Verdict::Confirmed
-    } else {
-        Verdict::Refuted
-    };
+    let verdict = if same { Verdict::Confirmed } else { Verdict::Refuted };
     let which = if same {
         "this sentence, not the one before it"
     } else {
@@ -533,8 +440,7 @@ fn range(experiment: &Experiment, quantity: Quantity) -> f64 {
     let errors: Vec<f64> = (0..experiment.scenario.contestants.len())
         .map(|c| comparison.error(c, quantity).value)
         .collect();
-    errors.iter().copied().fold(f64::MIN, f64::max)
-        - errors.iter().copied().fold(f64::MAX, f64::min)
+    errors.iter().copied().fold(f64::MIN, f64::max) - errors.iter().copied().fold(f64::MAX, f64::min)
 }
 
 /// The initial deviations that are swept, m and m/s: P₀ is not printed.
@@ -559,8 +465,7 @@ fn table_1_gaps(
         for velocity in VELOCITY_DEVIATIONS {
             let mut swept = scenario(&Choices::default())?;
             let deviations = Vector4::new(position, velocity, position, velocity);
-            swept.initial_covariance =
-                Matrix4::from_diagonal(&deviations.component_mul(&deviations));
+            swept.initial_covariance = Matrix4::from_diagonal(&deviations.component_mul(&deviations));
             let name = format!("initial deviations of {position} m and {velocity} m/s");
             experiments.push((name, Experiment::new(swept, effort, progress)));
         }
@@ -633,9 +538,8 @@ fn likelihood_exponent_effect(
     let schedule = &both.scenario.schedule;
     let turning = |k: usize| schedule[k] != Motion::Straight;
     let straight = |k: usize| schedule[k] == Motion::Straight;
-    let over = |chosen: &dyn Fn(usize) -> bool, quantity| {
-        comparison.difference_over(printed, corrected, quantity, chosen)
-    };
+    let over =
+        |chosen: &dyn Fn(usize) -> bool, quantity| comparison.difference_over(printed, corrected, quantity, chosen);
     let evidence = format!(
         "Not the density: |2πS| carries n_z already, and the printed exponent squares the determinant when n_z = 2. IMM5thSSRCKF with it, \
          minus without: position in the turns {}, on straight parts {}, velocity over all {}; mode probabilities up to {} apart; mean delay \
@@ -648,22 +552,14 @@ fn likelihood_exponent_effect(
         mean_delay(&both, corrected),
     );
     let changes = comparison.greatest_probability_difference(printed, corrected) > RELEVANT;
-    let verdict = if changes {
-        Verdict::Refuted
-    } else {
-        Verdict::Undecided
-    };
+    let verdict = if changes { Verdict::Refuted } else { Verdict::Undecided };
     Ok(s.judgement("liu2017-likelihood-exponent-effect", verdict, evidence))
 }
 
 fn printed_weights(s: &Specification, printed: &Experiment) -> Judgement {
-    let mut evidence =
-        String::from("Exact sums of the weights at n = 4, and the track of a filter with them:");
+    let mut evidence = String::from("Exact sums of the weights at n = 4, and the track of a filter with them:");
     let mut possible = false;
-    for (number, name) in [
-        (11, RuleName::SimplexPrinted11),
-        (16, RuleName::SimplexPrinted16),
-    ] {
+    for (number, name) in [(11, RuleName::SimplexPrinted11), (16, RuleName::SimplexPrinted16)] {
         let Ok(exact) = name.exact(4) else {
             continue;
         };
@@ -671,8 +567,7 @@ fn printed_weights(s: &Specification, printed: &Experiment) -> Judgement {
         possible |= sum == Rational::new(1, 1);
         let proposed = &printed.scenario.contestants[IMM5THSSRCKF];
         let probabilities = proposed.initial_probabilities.clone();
-        let contestant =
-            Contestant::with_rule("printed", proposed.problem.clone(), &name, probabilities);
+        let contestant = Contestant::with_rule("printed", proposed.problem.clone(), &name, probabilities);
         let alone = Scenario {
             contestants: vec![contestant],
             ..printed.scenario.clone()
@@ -685,7 +580,7 @@ fn printed_weights(s: &Specification, printed: &Experiment) -> Judgement {
         let end = runs[0][0]
             .failure
             .as_ref()
-            .map_or_else(|| "no step fails".to_owned(), |failure| failure.to_string());
+            .map_or_else(|| "no step fails".to_owned(), ToString::to_string);
         let _ = write!(
             evidence,
             " ({number}) {sum}, off by {} m after the first measurement, {end};",
@@ -698,7 +593,9 @@ fn printed_weights(s: &Specification, printed: &Experiment) -> Judgement {
     let ratio_16 = simplex::edge_weight(&n) / crate::rule::printed::edge_weight_16(&n);
     let as_said = ratio_11 == RationalFunction::integer(2) && ratio_16 == n;
     if as_said {
-        evidence.push_str(" symbolic: the weight of (11) is half of the right one and that of (16) an n-th of it, for every n.");
+        evidence.push_str(
+            " symbolic: the weight of (11) is half of the right one and that of (16) an n-th of it, for every n.",
+        );
     }
     s.judgement("liu2017-printed-weights", proven_if(possible), evidence)
 }

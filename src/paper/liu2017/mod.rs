@@ -45,11 +45,7 @@ pub const INITIAL_PROBABILITIES: [f64; 3] = [0.8, 0.1, 0.1];
 /// The transition matrix of the Markov chain — liu2017 (32).
 ///
 /// Rows are the modes at k − 1: constant velocity, left turn, right turn.
-pub const TRANSITION: [[f64; 3]; 3] = [
-    [0.95, 0.025, 0.025],
-    [0.025, 0.95, 0.025],
-    [0.025, 0.025, 0.95],
-];
+pub const TRANSITION: [[f64; 3]; 3] = [[0.95, 0.025, 0.025], [0.025, 0.95, 0.025], [0.025, 0.025, 0.95]];
 
 /// The scenario under the given choices.
 ///
@@ -98,12 +94,7 @@ pub fn scenario(choices: &Choices) -> Result<Scenario, InvalidChoice> {
     let deviations = Vector2::new(RANGE_DEVIATION, bearing_deviation);
     let contestant = |name: &str, rule: &RuleName| Contestant {
         equations,
-        ..Contestant::with_rule(
-            name,
-            problem(&deviations),
-            rule,
-            INITIAL_PROBABILITIES.to_vec(),
-        )
+        ..Contestant::with_rule(name, problem(&deviations), rule, INITIAL_PROBABILITIES.to_vec())
     };
     Ok(Scenario {
         paper: "liu2017",
@@ -180,9 +171,7 @@ fn problem(deviations: &Vector2<f64>) -> Problem<f64, 4, 2> {
             .to_vec(),
         transition: TRANSITION.iter().map(|row| row.to_vec()).collect(),
         measurement: measurement(),
-        measurement_noise: Matrix2::from_diagonal(
-            &deviations.map(|deviation| deviation * deviation),
-        ),
+        measurement_noise: Matrix2::from_diagonal(&deviations.map(|deviation| deviation * deviation)),
         rule: None,
     }
 }

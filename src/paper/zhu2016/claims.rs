@@ -12,12 +12,8 @@ use crate::paper::experiment::Experiment;
 use crate::paper::monte_carlo::{Progress, run};
 use crate::paper::result::{Comparison, Quantity};
 use crate::paper::scenario::{Contestant, Motion, Scenario};
-use crate::paper::specification::{
-    Choices, InvalidChoice, Specification, zhu2016 as specification,
-};
-use crate::paper::verdict::{
-    DECISIVE, Judgement, Verdict, all_below_zero, confirmed_if, in_words, proven_if,
-};
+use crate::paper::specification::{Choices, InvalidChoice, Specification, zhu2016 as specification};
+use crate::paper::verdict::{DECISIVE, Judgement, Verdict, all_below_zero, confirmed_if, in_words, proven_if};
 use crate::rule::sphere::{on_axes, on_axes_and_diagonals};
 use crate::rule::unscented::Parameters;
 use crate::rule::{ExactRule, Rule, RuleName, fifth_degree, third_degree, unscented};
@@ -37,12 +33,7 @@ const KALMAN: usize = 5;
 const RULES: [usize; 3] = [IMM5CKF, IMMCKF, IMMUKF];
 
 /// The components of the state, as the paper's table has them.
-const COMPONENTS: [Quantity; 4] = [
-    Quantity::X,
-    Quantity::VelocityX,
-    Quantity::Y,
-    Quantity::VelocityY,
-];
+const COMPONENTS: [Quantity; 4] = [Quantity::X, Quantity::VelocityX, Quantity::Y, Quantity::VelocityY];
 
 /// Two filters agree when no estimate differs by more than a millionth of the least standard deviation in the problem, √0.1 m. In a
 /// hundred steps at positions of 10⁴ m rounding leaves far less; a difference of the filters would be far more.
@@ -99,7 +90,7 @@ pub fn judge(effort: Effort, progress: Progress) -> Result<Vec<Judgement>, Inval
 /// The same modes with Kalman filters.
 fn kalman(contestant: &Contestant) -> Contestant {
     let mut kalman = contestant.clone();
-    kalman.name = "IMM-Kalman".to_owned();
+    "IMM-Kalman".clone_into(&mut kalman.name);
     kalman.problem.rule = None;
     kalman.equations = Equations::kalman();
     kalman.points = None;
@@ -141,11 +132,7 @@ fn better_than_single_model(s: &Specification, experiments: &[Experiment; 3]) ->
         let of = |quantity| comparison.difference(IMM5CKF, SINGLE, quantity);
         differences.extend(COMPONENTS.map(of));
         let words = in_words(of(Quantity::Position), "m");
-        let _ = write!(
-            evidence,
-            " {} {words};",
-            experiment.scenario.choices.describe()
-        );
+        let _ = write!(evidence, " {} {words};", experiment.scenario.choices.describe());
     }
     let verdict = all_below_zero(&differences);
     let _ = write!(
@@ -161,19 +148,13 @@ fn better_than_single_model(s: &Specification, experiments: &[Experiment; 3]) ->
 }
 
 fn better_than_omtm(s: &Specification, printed: &Experiment) -> Judgement {
-    let difference = printed
-        .comparison()
-        .difference(IMM5CKF, STAND_IN, Quantity::Position);
+    let difference = printed.comparison().difference(IMM5CKF, STAND_IN, Quantity::Position);
     let evidence = format!(
         "The paper gives no equation of OMTM-IMM and neither does what could be obtained of its source. Against the stand-in of this \
          crate, which decides nothing about it, the position error of IMM5CKF minus its own is {}.",
         in_words(difference, "m"),
     );
-    s.judgement(
-        "zhu2016-better-than-omtm",
-        Verdict::NotReproducible,
-        evidence,
-    )
+    s.judgement("zhu2016-better-than-omtm", Verdict::NotReproducible, evidence)
 }
 
 fn all_rmse_smaller(s: &Specification) -> Judgement {
@@ -185,20 +166,14 @@ fn all_rmse_smaller(s: &Specification) -> Judgement {
     for row in rows {
         for (column, value) in s.tables[0].columns.iter().zip(&row.values).skip(1) {
             if value <= &row.values[0] {
-                exceptions.push(format!(
-                    "{} of {column}, {value} against {}",
-                    row.name, row.values[0]
-                ));
+                exceptions.push(format!("{} of {column}, {value} against {}", row.name, row.values[0]));
             }
         }
     }
     let verdict = proven_if(exceptions.is_empty());
     let evidence = match verdict {
         Verdict::Proven => "Every other figure of table 1 is larger.".to_owned(),
-        _ => format!(
-            "Table 1 itself has smaller figures: {}.",
-            exceptions.join("; ")
-        ),
+        _ => format!("Table 1 itself has smaller figures: {}.", exceptions.join("; ")),
     };
     s.judgement("zhu2016-all-rmse-smaller", verdict, evidence)
 }
@@ -206,24 +181,14 @@ fn all_rmse_smaller(s: &Specification) -> Judgement {
 fn captures_switches(s: &Specification, printed: &Experiment) -> Judgement {
     let comparison = printed.comparison();
     let delays = comparison.delays(IMM5CKF);
-    let missed: usize = delays
-        .iter()
-        .flatten()
-        .filter(|delay| delay.is_none())
-        .count();
-    let summaries: Vec<String> = delays
-        .iter()
-        .map(|of_runs| delay_summary(of_runs))
-        .collect();
+    let missed: usize = delays.iter().flatten().filter(|delay| delay.is_none()).count();
+    let summaries: Vec<String> = delays.iter().map(|of_runs| delay_summary(of_runs)).collect();
     let evidence = format!(
         "Delay until the true mode is more likely than not, at the four switches: {}; never noticed: {missed}.",
         summaries.join(", "),
     );
     // In time: within three seconds, less than a sixth of the shortest motion.
-    let late = delays
-        .iter()
-        .flatten()
-        .any(|delay| delay.is_none_or(|delay| delay > 3));
+    let late = delays.iter().flatten().any(|delay| delay.is_none_or(|delay| delay > 3));
     s.judgement("zhu2016-captures-switches", confirmed_if(!late), evidence)
 }
 
@@ -237,8 +202,7 @@ fn delay_summary(delays: &[Option<usize>]) -> String {
 
 fn switching_sensitivity(s: &Specification, printed: &Experiment) -> Judgement {
     let comparison = printed.comparison();
-    let probabilities =
-        [IMMCKF, IMMUKF].map(|other| comparison.greatest_probability_difference(IMM5CKF, other));
+    let probabilities = [IMMCKF, IMMUKF].map(|other| comparison.greatest_probability_difference(IMM5CKF, other));
     let same_delays = [IMMCKF, IMMUKF]
         .iter()
         .all(|&other| comparison.delays(IMM5CKF) == comparison.delays(other));
@@ -253,11 +217,7 @@ fn switching_sensitivity(s: &Specification, printed: &Experiment) -> Judgement {
             "not the same in every run"
         },
     );
-    s.judgement(
-        "zhu2016-switching-sensitivity",
-        confirmed_if(!same_delays),
-        evidence,
-    )
+    s.judgement("zhu2016-switching-sensitivity", confirmed_if(!same_delays), evidence)
 }
 
 fn imm_beats_single_model(s: &Specification, experiments: &[Experiment; 3]) -> Judgement {
@@ -268,9 +228,8 @@ fn imm_beats_single_model(s: &Specification, experiments: &[Experiment; 3]) -> J
         let schedule = &experiment.scenario.schedule;
         let straight = |k: usize| schedule[k] == Motion::Straight;
         let turning = |k: usize| schedule[k] != Motion::Straight;
-        let over = |chosen: &dyn Fn(usize) -> bool| {
-            comparison.difference_over(IMM5CKF, SINGLE, Quantity::Position, chosen)
-        };
+        let over =
+            |chosen: &dyn Fn(usize) -> bool| comparison.difference_over(IMM5CKF, SINGLE, Quantity::Position, chosen);
         let (in_turns, on_straights) = (over(&turning), over(&straight));
         let _ = write!(
             evidence,
@@ -303,22 +262,14 @@ fn three_dimensions_equal(s: &Specification) -> Judgement {
         "Exact: with κ = 3 − n the centre has weight zero and the other points and weights are those of the third-degree rule for n in \
          {equal:?}, and for no other n from 1 to 10.",
     );
-    s.judgement(
-        "zhu2016-three-dimensions-equal",
-        proven_if(equal == [3]),
-        evidence,
-    )
+    s.judgement("zhu2016-three-dimensions-equal", proven_if(equal == [3]), evidence)
 }
 
 fn negative_weights_diverge(s: &Specification, printed: &Experiment) -> Judgement {
     let negative: Vec<String> = (4..=8)
         .filter_map(|n| unscented::unscented(n, &Parameters::for_gaussian(n)).ok())
         .map(|rule| {
-            let negative = rule
-                .weights
-                .iter()
-                .filter(|w| **w < Rational::new(0, 1))
-                .count();
+            let negative = rule.weights.iter().filter(|w| **w < Rational::new(0, 1)).count();
             format!("{negative} of {} ({})", rule.weights.len(), rule.weights[0])
         })
         .collect();
@@ -343,9 +294,8 @@ fn negative_weights_diverge(s: &Specification, printed: &Experiment) -> Judgemen
 fn negative_weights_vanish(s: &Specification) -> Judgement {
     let dimensions = [4, 8, 16, 32, 64];
     let zero = Rational::new(0, 1);
-    let mut evidence = String::from(
-        "Exact, n: weight w₁, sum of the negative weights, Σ|w|, and Σ|w| of the unscented rule:",
-    );
+    let mut evidence =
+        String::from("Exact, n: weight w₁, sum of the negative weights, Σ|w|, and Σ|w| of the unscented rule:");
     let mut single = Vec::new();
     let mut sums = Vec::new();
     for n in dimensions {
@@ -370,11 +320,7 @@ fn negative_weights_vanish(s: &Specification) -> Judgement {
         " each negative weight goes to zero like −1/(2n), but there are 2n of them: their sum n(4 − n)/(n + 2)² goes to −1 and Σ|w| to 3. \
          Smaller than the unscented rule's (2n − 3)/3 for every n ≥ 4, so the comparison holds and its reason does not.",
     );
-    s.judgement(
-        "zhu2016-negative-weights-vanish",
-        proven_if(!sums_grow),
-        evidence,
-    )
+    s.judgement("zhu2016-negative-weights-vanish", proven_if(!sums_grow), evidence)
 }
 
 fn equal_weights(s: &Specification) -> Judgement {
@@ -391,17 +337,12 @@ fn equal_weights(s: &Specification) -> Judgement {
         distinct.join(", "),
         rule.effective_points(),
     );
-    s.judgement(
-        "zhu2016-equal-weights",
-        proven_if(distinct.len() == 1),
-        evidence,
-    )
+    s.judgement("zhu2016-equal-weights", proven_if(distinct.len() == 1), evidence)
 }
 
 fn no_divergence(s: &Specification, printed: &Experiment) -> Judgement {
     let comparison = printed.comparison();
-    let mut evidence =
-        String::from("Mean NEES (4 expected) and greatest position error of any run:");
+    let mut evidence = String::from("Mean NEES (4 expected) and greatest position error of any run:");
     let mut bounded = true;
     for (c, contestant) in printed.scenario.contestants.iter().enumerate() {
         let (nees, _) = comparison.consistency(c);
@@ -427,12 +368,11 @@ fn no_divergence(s: &Specification, printed: &Experiment) -> Judgement {
 
 fn single_model_worst(s: &Specification, experiments: &[Experiment; 3]) -> Judgement {
     let mut differences = Vec::new();
-    let mut evidence =
-        String::from("Single 5CKF minus the worst of the others, error of position:");
+    let mut evidence = String::from("Single 5CKF minus the worst of the others, error of position:");
     for experiment in experiments {
         let comparison = experiment.comparison();
-        let others = [IMM5CKF, IMMCKF, IMMUKF, STAND_IN]
-            .map(|other| comparison.difference(other, SINGLE, Quantity::Position));
+        let others =
+            [IMM5CKF, IMMCKF, IMMUKF, STAND_IN].map(|other| comparison.difference(other, SINGLE, Quantity::Position));
         let nearest = others
             .into_iter()
             .max_by(|a, b| a.value.total_cmp(&b.value))
@@ -447,19 +387,11 @@ fn single_model_worst(s: &Specification, experiments: &[Experiment; 3]) -> Judge
         );
     }
     evidence.push_str(" in the published table 5CKF is the worst in every row.");
-    s.judgement(
-        "zhu2016-single-model-worst",
-        all_below_zero(&differences),
-        evidence,
-    )
+    s.judgement("zhu2016-single-model-worst", all_below_zero(&differences), evidence)
 }
 
 fn load(s: &Specification) -> Judgement {
-    let count = |rule: Result<ExactRule, _>| {
-        rule.map_or((0, 0), |r: ExactRule| {
-            (r.points.len(), r.effective_points())
-        })
-    };
+    let count = |rule: Result<ExactRule, _>| rule.map_or((0, 0), |r: ExactRule| (r.points.len(), r.effective_points()));
     let (points, effective) = count(fifth_degree::fifth_degree(4));
     let (third, _) = count(third_degree::third_degree(4));
     let Some(times) = s.tables[0].rows.iter().find(|row| row.name == "Time") else {
@@ -474,11 +406,7 @@ fn load(s: &Specification) -> Judgement {
         figure(effective as f64 / third as f64),
         figure(ratio),
     );
-    s.judgement(
-        "zhu2016-load",
-        proven_if(effective > third && ratio > 1.0),
-        evidence,
-    )
+    s.judgement("zhu2016-load", proven_if(effective > third && ratio > 1.0), evidence)
 }
 
 fn nonlinear_filters_better_than_omtm(s: &Specification, printed: &Experiment) -> Judgement {
@@ -489,11 +417,7 @@ fn nonlinear_filters_better_than_omtm(s: &Specification, printed: &Experiment) -
         figure(estimates),
     );
     let verdict = confirmed_if(estimates > AGREEMENT);
-    s.judgement(
-        "zhu2016-nonlinear-filters-better-than-omtm",
-        verdict,
-        evidence,
-    )
+    s.judgement("zhu2016-nonlinear-filters-better-than-omtm", verdict, evidence)
 }
 
 fn columns_differ(s: &Specification, printed: &Experiment) -> Judgement {
@@ -506,9 +430,7 @@ fn columns_differ(s: &Specification, printed: &Experiment) -> Judgement {
     let unscented = on_axes(&n, centre, &unscented::axis_weight(&n, &lambda), of(3));
     let fifth = on_axes_and_diagonals(&n, &fifth_degree::diagonal_weight(&n));
     let degrees = [third.degree(), unscented.degree(), fifth.degree()];
-    let premise = degrees
-        .iter()
-        .all(|degree| degree.is_some_and(|degree| degree >= 2));
+    let premise = degrees.iter().all(|degree| degree.is_some_and(|degree| degree >= 2));
 
     let comparison = printed.comparison();
     let mut evidence = format!(
@@ -525,8 +447,8 @@ fn columns_differ(s: &Specification, printed: &Experiment) -> Judgement {
             .filter(|row| quantity_of_row(&row.name) == Some(quantity))
             .flat_map(|row| row.values[..3].to_vec())
             .collect();
-        let range = published.iter().copied().fold(f64::MIN, f64::max)
-            - published.iter().copied().fold(f64::MAX, f64::min);
+        let range =
+            published.iter().copied().fold(f64::MIN, f64::max) - published.iter().copied().fold(f64::MAX, f64::min);
         beyond_chance += usize::from(range > DECISIVE * spread);
         let _ = write!(
             evidence,
@@ -638,11 +560,7 @@ fn printed_weight(s: &Specification, printed: &Experiment) -> Judgement {
         ..printed.scenario.clone()
     };
     let runs = run(&alone, 1, 1, &|| ());
-    let first = runs[0][0]
-        .errors
-        .first()
-        .copied()
-        .unwrap_or(Vector4::zeros());
+    let first = runs[0][0].errors.first().copied().unwrap_or(Vector4::zeros());
     let last = runs[0][0].failure.as_ref().map_or_else(
         || {
             format!(
@@ -673,9 +591,11 @@ fn better_than_ckf(s: &Specification) -> Judgement {
         "The filters that were run are {}; a single CKF is not among them.",
         columns.join(", ")
     );
-    let verdict = match columns.iter().any(|column| column == "CKF") {
-        true => Verdict::Undecided,
-        false => Verdict::NotReproducible,
+    let was_run = columns.iter().any(|column| column == "CKF");
+    let verdict = if was_run {
+        Verdict::Undecided
+    } else {
+        Verdict::NotReproducible
     };
     s.judgement("zhu2016-better-than-ckf", verdict, evidence)
 }

@@ -180,9 +180,7 @@ impl Builder {
             [_] => vec![vec![1.0]],
             _ => TRANSITION.iter().map(|row| row.to_vec()).collect(),
         };
-        let variances = self
-            .measurement_deviations
-            .map(|deviation| deviation * deviation);
+        let variances = self.measurement_deviations.map(|deviation| deviation * deviation);
         Problem {
             modes: motions.iter().map(mode).collect(),
             transition,

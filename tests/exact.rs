@@ -1,0 +1,1039 @@
+//! Goal: the rules, the factorisations and the transition matrices are exactly what their doc comments say.
+//!
+//! Method: both sides are computed in rationals and surds, or in doubles where every step is exact (small integers), and
+//! compared with `==`. Kind of evidence: exact; there is no tolerance in this file. What holds for every dimension at
+//! once is proven in `symbolic.rs`; here the points themselves are looked at, dimension by dimension.
+
+// Doubles are compared exactly: either every operation on them is exact, or they must be the nearest ones.
+#![allow(clippy::float_cmp)]
+
+use immaculate::matrix::{
+    NotPositiveDefinite, check_positive_definite, cholesky, is_positive_semidefinite, ldl, quadratic_form, solve,
+};
+use immaculate::model::motion::{acceleration_noise, constant_velocity, coordinated_turn, integrated_noise};
+use immaculate::number::{Field, Rational, RationalFunction, Surd};
+use immaculate::rule::fifth_degree::{self, fifth_degree};
+use immaculate::rule::gauss_hermite::{Node, gauss_hermite, moment, nodes};
+use immaculate::rule::moment::{exactness, gaussian_moment, rule_moment, wrong_moment_of_degree};
+use immaculate::rule::simplex::{self, edge_midpoints, simplex, vertices};
+use immaculate::rule::sphere::{SphericalRule, on_axes, on_axes_and_diagonals, on_simplex, radial_moment};
+use immaculate::rule::third_degree::{self, third_degree};
+use immaculate::rule::unscented::{self, Parameters, unscented};
+use immaculate::rule::{ExactRule, Rule, printed};
+use nalgebra::{SMatrix, SVector, matrix, vector};
+use num_traits::{One, Zero};
+use std::collections::BTreeMap;
+
+// The degrees of the rules
+
+#[test]
+fn third_degree_rule_is_exact_to_degree_three_and_not_four() {
+    for n in 1..=10 {
+        let found = exactness(&third_degree(n).unwrap(), 4);
+        assert_eq!(found.degree, Some(3), "n = {n}");
+        // E x₁⁴ is 2 · n²/(2n) = n. At n = 3 that is right, and a product of two squares is not.
+        let first_wrong = match n {
+            3 => "E x1^2 x2^2 = 0, where the Gaussian has 1".to_owned(),
+            _ => format!("E x1^4 = {n}, where the Gaussian has 3"),
+        };
+        assert_eq!(found.failure.unwrap().to_string(), first_wrong);
+    }
+}
+
+#[test]
+fn unscented_rule_is_exact_to_degree_three_and_not_four() {
+    for n in 1..=10 {
+        for parameters in unscented_parameters(n) {
+            let radius_squared = whole(n) + parameters.lambda(n);
+            let found = exactness(&unscented(n, &parameters).unwrap(), 6);
+            let first_wrong = found.failure.unwrap().to_string();
+            // With the square of the radius 3 the fourth moment of a coordinate is right. In one dimension that is every
+            // moment of degree four, and the rule is the Gauss-Hermite rule of three nodes.
+            let (degree, text) = match (n, radius_squared == whole(3)) {
+                (1, true) => (5, "E x1^6 = 9, where the Gaussian has 15".to_owned()),
+                (_, true) => (3, "E x1^2 x2^2 = 0, where the Gaussian has 1".to_owned()),
+                (_, false) => (3, format!("E x1^4 = {radius_squared}, where the Gaussian has 3")),
+            };
+            assert_eq!(found.degree, Some(degree), "n = {n}, {parameters:?}");
+            assert_eq!(first_wrong, text);
+        }
+    }
+}
+
+#[test]
+fn unscented_rule_of_one_dimension_has_degree_five_when_its_radius_squared_is_three() {
+    let three_nodes = fifth_degree(1).unwrap();
+    let kappa_two = unscented(1, &Parameters::of_kappa(whole(2))).unwrap();
+    assert_eq!(kappa_two.points, three_nodes.points);
+    assert_eq!(kappa_two.weights, three_nodes.weights);
+    assert_eq!(exactness(&kappa_two, 5).degree, Some(5));
+    // Another κ, another degree.
+    let kappa_one = unscented(1, &Parameters::of_kappa(whole(1))).unwrap();
+    assert_eq!(exactness(&kappa_one, 5).degree, Some(3));
+}
+
+#[test]
+fn fifth_degree_rule_is_exact_to_degree_five_and_not_six() {
+    for n in 1..=10 {
+        let found = exactness(&fifth_degree(n).unwrap(), 6);
+        assert_eq!(found.degree, Some(5), "n = {n}");
+        // E x₁⁶ = (n + 2)(7 − n)/2: zero at n = 7 and negative beyond, for a power that is never negative.
+        let sixth = (whole(n) + whole(2)) * (whole(7) - whole(n)) / whole(2);
+        assert_eq!(
+            found.failure.unwrap().to_string(),
+            format!("E x1^6 = {sixth}, where the Gaussian has 15")
+        );
+    }
+}
+
+#[test]
+fn simplex_rule_is_exact_to_degree_five_and_not_six() {
+    for n in 2..=10 {
+        let found = exactness(&simplex(n).unwrap(), 6);
+        assert_eq!(found.degree, Some(5), "n = {n}");
+        let wrong = found.failure.unwrap();
+        let mut first = vec![0; n];
+        first[0] = 6;
+        assert_eq!(wrong.exponents, first);
+        // The coordinates of the points along the first vertex: 1, −1/n; (n−1)/(2n) and 2/(n(n−1)) when squared.
+        let n = whole(n);
+        let along_midpoints = |times: Rational, squared: Rational| times * squared.pow(3);
+        let vertices = (whole(1) + n.clone() / n.pow(6)) * simplex::vertex_weight(&n);
+        let midpoints = along_midpoints(n.clone(), (n.clone() - whole(1)) / (whole(2) * n.clone()))
+            + along_midpoints(
+                n.clone() * (n.clone() - whole(1)) / whole(2),
+                whole(2) / (n.clone() * (n.clone() - whole(1))),
+            );
+        let radius_to_the_sixth = (n.clone() + whole(2)).pow(3);
+        let sixth = whole(2) * radius_to_the_sixth * (vertices + midpoints * simplex::edge_weight(&n));
+        assert_eq!(wrong.rule, Surd::rational(&sixth));
+        assert_eq!(wrong.gaussian, whole(15));
+    }
+}
+
+#[test]
+fn a_rule_with_one_wrong_point_or_weight_loses_its_degree() {
+    let right = fifth_degree(3).unwrap();
+    assert_eq!(exactness(&right, 5).degree, Some(5));
+
+    let mut wrong_sign = right.clone();
+    wrong_sign.points[1][0] = -wrong_sign.points[1][0].clone();
+    assert_eq!(exactness(&wrong_sign, 5).degree, Some(0));
+
+    let mut wrong_weight = right.clone();
+    wrong_weight.weights[0] += Rational::new(1, 1_000_000_000_000);
+    assert_eq!(exactness(&wrong_weight, 5).degree, None);
+
+    // Opposite points that are moved outwards together keep the odd moments, and lose the second ones.
+    let mut wrong_length = right;
+    for point in &mut wrong_length.points[1..=6] {
+        for coordinate in point {
+            *coordinate *= Surd::ratio(1_000_001, 1_000_000);
+        }
+    }
+    assert_eq!(exactness(&wrong_length, 5).degree, Some(1));
+}
+
+#[test]
+fn sixth_moments_of_the_fifth_degree_rules_in_four_dimensions() {
+    let gaussian = ["15", "3", "1"];
+    let exponents = [[6, 0, 0, 0], [4, 2, 0, 0], [2, 2, 2, 0]];
+    let fifth = fifth_degree(4).unwrap();
+    let moments = |rule: &ExactRule| exponents.map(|e| rule_moment(rule, &e).to_string());
+    assert_eq!(exponents.map(|e| gaussian_moment(&e).to_string()), gaussian);
+    // The points of zhu2016 have at most two coordinates that are not zero: the product of three squares vanishes.
+    assert_eq!(moments(&fifth), ["9", "3", "0"]);
+    assert_eq!(moments(&simplex(4).unwrap()), ["435/32", "47/32", "91/96"]);
+}
+
+#[test]
+fn sixth_moments_of_the_simplex_rule_depend_on_the_axis() {
+    let sixth = |rule: &ExactRule| -> Vec<String> {
+        (0..4)
+            .map(|axis| {
+                let mut exponents = [0; 4];
+                exponents[axis] = 6;
+                rule_moment(rule, &exponents).to_string()
+            })
+            .collect()
+    };
+    assert_eq!(sixth(&fifth_degree(4).unwrap()), ["9", "9", "9", "9"]);
+    assert_eq!(sixth(&simplex(4).unwrap()), ["435/32", "1225/96", "275/24", "75/8"]);
+}
+
+// Gauss-Hermite
+
+#[test]
+fn gauss_hermite_rule_has_degree_two_m_minus_one() {
+    for m in 2..=5 {
+        let nodes = nodes(m).unwrap();
+        assert_eq!(nodes.len(), m);
+        // One coordinate: every power up to 2m − 1, and not 2m.
+        for power in 0..2 * m {
+            assert_eq!(moment(&nodes, power), gaussian(&[power]), "m = {m}");
+        }
+        assert_ne!(moment(&nodes, 2 * m), gaussian(&[2 * m]), "m = {m}");
+        // Products: the sum over mⁿ points is a product of sums, so a monomial is right when each exponent is below 2m.
+        for (n, up_to) in [(2, 2 * m), (3, 2 * m)] {
+            for exponents in exponents_of_degree_up_to(n, up_to) {
+                let product = exponents
+                    .iter()
+                    .fold(Surd::one(), |product, &power| product * moment(&nodes, power));
+                let is_right = product == gaussian(&exponents);
+                assert_eq!(is_right, exponents.iter().all(|&e| e < 2 * m));
+            }
+        }
+    }
+    assert!(nodes(1).is_err());
+    assert!(nodes(6).is_err());
+}
+
+#[test]
+fn gauss_hermite_nodes_come_in_pairs_of_opposite_sign() {
+    for m in 2..=5 {
+        let nodes = nodes(m).unwrap();
+        for node in &nodes {
+            let opposite = Node {
+                sign: -node.sign,
+                ..node.clone()
+            };
+            assert_eq!(nodes.iter().filter(|other| **other == opposite).count(), 1);
+            assert_eq!(node.sign == 0, node.square.is_zero());
+            assert!(node.weight.is_positive());
+        }
+    }
+}
+
+#[test]
+fn gauss_hermite_nodes_are_the_roots_of_the_hermite_polynomial() {
+    for m in 2..=5 {
+        let factorial = (1..=m).fold(Surd::one(), |product, i| product * surd(&whole(i)));
+        for node in nodes(m).unwrap() {
+            assert!(hermite_squared(m, &node.square).is_zero(), "m = {m}");
+            assert!(!hermite_squared(m, &(node.square.clone() + Surd::one())).is_zero());
+            // Abramowitz and Stegun 25.4.46 in the variable √2 x: w = m! / (m² He₍m−1₎(x)²).
+            let squared = hermite_squared(m - 1, &node.square);
+            let weight = factorial.clone() / (surd(&whole(m * m)) * squared);
+            assert_eq!(node.weight, weight, "m = {m}");
+        }
+    }
+}
+
+#[test]
+fn gauss_hermite_rule_of_two_nodes_is_the_corners_of_a_cube() {
+    // Every number here is a double: ±1 and 1/8.
+    let rule = gauss_hermite::<f64, 3>(2).unwrap();
+    assert_eq!(rule.weights, vec![0.125; 8]);
+    for corner in 0..8 {
+        let sign = |axis: usize| if corner >> axis & 1 == 0 { 1.0 } else { -1.0 };
+        let place = SVector::<f64, 3>::from_fn(|axis, _| sign(axis));
+        assert_eq!(rule.points.iter().filter(|p| **p == place).count(), 1);
+    }
+}
+
+// The points
+
+#[test]
+fn simplex_vertices_are_unit_vectors_with_equal_angles() {
+    for n in 2..=10 {
+        let vertices = vertices(n);
+        assert_eq!(vertices.len(), n + 1);
+        for (i, first) in vertices.iter().enumerate() {
+            for (l, second) in vertices.iter().enumerate() {
+                let expected = if i == l {
+                    Surd::one()
+                } else {
+                    -Surd::one() / surd(&whole(n))
+                };
+                assert_eq!(inner(first, second), expected, "n = {n}, {i}, {l}");
+            }
+        }
+        for axis in 0..n {
+            let sum = vertices.iter().fold(Surd::zero(), |sum, v| sum + &v[axis]);
+            assert!(sum.is_zero(), "n = {n}");
+        }
+    }
+}
+
+#[test]
+fn simplex_edge_midpoints_are_unit_vectors_along_the_sums_of_two_vertices() {
+    for n in 2..=10 {
+        let vertices = vertices(n);
+        let midpoints = edge_midpoints(n);
+        assert_eq!(midpoints.len(), n * (n + 1) / 2);
+        let mut next = midpoints.iter();
+        for i in 0..=n {
+            for l in i + 1..=n {
+                let midpoint = next.next().unwrap();
+                assert_eq!(inner(midpoint, midpoint), Surd::one());
+                // Equally near to the two vertices, and nearer than to any other: (n − 1)/(2n) and 2/(n(n − 1)), squared.
+                let near = inner(midpoint, &vertices[i]);
+                assert_eq!(near, inner(midpoint, &vertices[l]));
+                assert_eq!(
+                    near.clone() * near.clone(),
+                    surd(&((whole(n) - whole(1)) / (whole(2) * whole(n))))
+                );
+                assert!(near.is_positive());
+            }
+        }
+    }
+}
+
+#[test]
+fn simplex_points_coincide_at_dimension_two() {
+    let rule = simplex(2).unwrap();
+    assert_eq!(rule.points.len(), 13);
+    assert_eq!(rule.distinct_points(), 7);
+    // The midpoint between two vertices is the mirror image of the third.
+    let (vertices, midpoints) = (vertices(2), edge_midpoints(2));
+    for (midpoint, third) in midpoints.iter().zip([2, 1, 0]) {
+        let mirror: Vec<Surd> = vertices[third].iter().map(|x| -x.clone()).collect();
+        assert_eq!(*midpoint, mirror);
+    }
+    // At n = 3 the midpoints of opposite edges of the tetrahedron are each other's mirror images: 12 points at 6 places.
+    let in_space = simplex(3).unwrap();
+    assert_eq!((in_space.points.len(), in_space.distinct_points()), (21, 15));
+    let tetrahedron = edge_midpoints(3);
+    for (midpoint, opposite) in tetrahedron.iter().zip(tetrahedron.iter().rev()) {
+        assert!(midpoint.iter().zip(opposite).all(|(x, y)| *x == -y.clone()));
+    }
+    for n in 4..=7 {
+        let rule = simplex(n).unwrap();
+        assert_eq!(rule.distinct_points(), rule.points.len(), "n = {n}");
+    }
+}
+
+#[test]
+fn rules_have_the_documented_number_of_points() {
+    for n in 1..=10 {
+        let parameters = Parameters::of_kappa(whole(1));
+        assert_eq!(third_degree(n).unwrap().points.len(), 2 * n);
+        assert_eq!(unscented(n, &parameters).unwrap().points.len(), 2 * n + 1);
+        assert_eq!(fifth_degree(n).unwrap().points.len(), 2 * n * n + 1);
+        if n > 1 {
+            assert_eq!(simplex(n).unwrap().points.len(), n * n + 3 * n + 3);
+        }
+    }
+    assert_eq!(gauss_hermite::<f64, 4>(3).unwrap().points.len(), 81);
+    for rule in all_rules(4) {
+        assert_eq!(rule.points.len(), rule.weights.len());
+        assert_eq!(rule.points.len(), rule.covariance_weights.len());
+        assert!(rule.points.iter().all(|point| point.len() == 4));
+    }
+}
+
+#[test]
+fn rules_of_a_mean_and_a_covariance_exist_from_dimension_one_and_the_simplex_from_two() {
+    assert!(third_degree(0).is_err());
+    assert!(fifth_degree(0).is_err());
+    assert!(unscented(0, &Parameters::of_kappa(whole(1))).is_err());
+    assert!(simplex(1).is_err());
+    assert!(gauss_hermite::<f64, 0>(3).is_err());
+    // n + λ = 0 and below have no radius.
+    assert!(unscented(2, &Parameters::of_kappa(-whole(2))).is_err());
+    assert!(unscented(2, &Parameters::of_kappa(-whole(3))).is_err());
+}
+
+#[test]
+fn effective_points_are_25_of_33_and_57_of_73() {
+    let fifth = fifth_degree(4).unwrap();
+    assert_eq!((fifth.effective_points(), fifth.points.len()), (25, 33));
+    let simplex_seven = simplex(7).unwrap();
+    assert_eq!((simplex_seven.effective_points(), simplex_seven.points.len()), (57, 73));
+    assert_eq!(fifth_degree(5).unwrap().effective_points(), 51);
+    assert_eq!(simplex(4).unwrap().effective_points(), 31);
+}
+
+#[test]
+fn unscented_rule_with_kappa_zero_is_the_third_degree_rule_and_a_centre_without_weight() {
+    for n in 1..=10 {
+        let third = third_degree(n).unwrap();
+        let with_centre = unscented(n, &Parameters::of_kappa(whole(0))).unwrap();
+        assert_eq!(with_centre.points[1..], third.points, "n = {n}");
+        assert_eq!(with_centre.weights[1..], third.weights);
+        assert!(with_centre.weights[0].is_zero());
+        assert!(with_centre.points[0].iter().all(Zero::is_zero));
+        // κ = 3 − n gives the same rule at n = 3, and at no other n.
+        let for_gaussian = unscented(n, &Parameters::for_gaussian(n)).unwrap();
+        assert_eq!(for_gaussian == with_centre, n == 3, "n = {n}");
+    }
+}
+
+#[test]
+fn covariance_weights_differ_at_the_centre_only_and_give_the_unit_covariance() {
+    for n in 1..=6 {
+        for parameters in unscented_parameters(n) {
+            let rule = unscented(n, &parameters).unwrap();
+            assert_eq!(rule.covariance_weights[1..], rule.weights[1..]);
+            let alpha_squared = parameters.alpha.pow(2);
+            assert_eq!(
+                rule.covariance_weights[0].clone() - rule.weights[0].clone(),
+                whole(1) - alpha_squared + parameters.beta.clone()
+            );
+        }
+    }
+    for rule in all_rules(4) {
+        for i in 0..4 {
+            for j in 0..4 {
+                let weighted = rule.points.iter().zip(&rule.covariance_weights);
+                let moment = weighted.fold(Surd::zero(), |sum, (point, weight)| {
+                    sum + surd(weight) * point[i].clone() * point[j].clone()
+                });
+                let expected = if i == j { Surd::one() } else { Surd::zero() };
+                assert_eq!(moment, expected);
+            }
+        }
+    }
+}
+
+// The weights
+
+#[test]
+fn signs_of_the_weights_are_as_documented() {
+    for n in 1..=64 {
+        let (exact, four, seven, three) = (whole(n), whole(4), whole(7), whole(3));
+        let sign_of = |weight: Rational| weight.sign().unwrap();
+        let below = |limit: &Rational| limit.partial_cmp(&exact).unwrap();
+
+        assert!(fifth_degree::centre_weight(&exact).is_positive());
+        assert!(fifth_degree::diagonal_weight(&exact).is_positive());
+        assert_eq!(sign_of(fifth_degree::axis_weight(&exact)), below(&four));
+
+        assert!(simplex::centre_weight(&exact).is_positive());
+        assert_eq!(sign_of(simplex::vertex_weight(&exact)), below(&seven));
+        assert_eq!(sign_of(simplex::sphere_vertex_weight(&exact)), below(&seven));
+        assert_eq!(simplex::edge_weight(&exact).is_positive(), n > 1);
+        assert_eq!(simplex::sphere_edge_weight(&exact).is_positive(), n > 1);
+
+        assert!(third_degree::axis_weight(&exact).is_positive());
+        let lambda = Parameters::for_gaussian(n).lambda(n);
+        let centre = unscented::centre_weight(&exact, &lambda);
+        assert_eq!(sign_of(centre), below(&three));
+        assert!(unscented::axis_weight(&exact, &lambda).is_positive());
+    }
+}
+
+#[test]
+fn sums_of_absolute_weights_have_their_closed_forms() {
+    for n in 1..=12 {
+        let exact = whole(n);
+        let fifth = fifth_degree(n).unwrap();
+        // One while no weight is negative: up to n = 4. (The two forms agree there.)
+        let expected = if n < 4 {
+            whole(1)
+        } else {
+            (whole(3) * exact.pow(2) - whole(4) * exact.clone() + whole(4)) / (exact.clone() + whole(2)).pow(2)
+        };
+        assert_eq!(fifth.sum_of_absolute_weights(), expected, "n = {n}");
+
+        assert_eq!(third_degree(n).unwrap().sum_of_absolute_weights(), whole(1));
+
+        let for_gaussian = unscented(n, &Parameters::for_gaussian(n)).unwrap();
+        let expected = if n < 3 {
+            whole(1)
+        } else {
+            (whole(2) * exact.clone() - whole(3)) / whole(3)
+        };
+        assert_eq!(for_gaussian.sum_of_absolute_weights(), expected, "n = {n}");
+
+        if n > 1 {
+            let expected = if n <= 7 {
+                whole(1)
+            } else {
+                whole(1)
+                    + whole(2) * (exact.clone() - whole(7)) * exact.pow(2)
+                        / ((exact.clone() + whole(1)) * (exact.clone() + whole(2)).pow(2))
+            };
+            assert_eq!(simplex(n).unwrap().sum_of_absolute_weights(), expected);
+        }
+    }
+    let at_eight = simplex(8).unwrap().sum_of_absolute_weights();
+    assert_eq!(at_eight, Rational::new(257, 225));
+}
+
+#[test]
+fn negative_weights_of_the_fifth_degree_rule_vanish_one_by_one_and_not_in_sum() {
+    // zhu2016, section 3: "the negative weights go to 0 when the dimension of the system goes to ∞".
+    let of_all = |n: &Rational| whole(2) * n.clone() * fifth_degree::axis_weight(n);
+    let mut before = whole(0);
+    for n in 5..=64 {
+        let n = whole(n);
+        // The sum of the negative weights falls towards −1, and Σ|w| = 1 − 2 · sum rises towards 3 ...
+        assert!(of_all(&n) < before);
+        before = of_all(&n);
+    }
+    assert_eq!(of_all(&whole(64)), Rational::new(-320, 363));
+    for power in 3..=9 {
+        let n = whole(10_usize.pow(power));
+        let rest = of_all(&n) + whole(1);
+        assert!(rest.is_positive() && rest < whole(8) / n.clone());
+        // ... while each of them vanishes like −1/(2n).
+        assert!(fifth_degree::axis_weight(&n).abs() < whole(1) / n);
+    }
+}
+
+// What the papers print
+
+#[test]
+fn printed_fifth_degree_weight_breaks_the_zeroth_moment() {
+    for n in 2..=10 {
+        let as_printed = printed::fifth_degree(n).unwrap();
+        let exact = whole(n);
+        let sum = (whole(3) * exact.pow(2) + whole(2) * exact.clone() + whole(4)) / (exact.clone() + whole(2)).pow(2);
+        assert_eq!(as_printed.sum_of_weights(), sum, "n = {n}");
+        let found = exactness(&as_printed, 5);
+        assert_eq!(found.degree, None);
+        assert_eq!(
+            found.failure.unwrap().to_string(),
+            format!("E 1 = {sum}, where the Gaussian has 1")
+        );
+        // The second moment is 3n/(n + 2) for 1.
+        let second = wrong_moment_of_degree(&as_printed, 2).unwrap();
+        let expected = whole(3) * exact.clone() / (exact + whole(2));
+        assert_eq!(second.rule, surd(&expected));
+        assert_eq!(second.gaussian, whole(1));
+
+        let corrected = fifth_degree(n).unwrap();
+        assert_eq!(corrected.points, as_printed.points);
+        assert_eq!(corrected.sum_of_weights(), whole(1));
+        assert_eq!(exactness(&corrected, 2).degree, Some(2));
+    }
+    let at_four = printed::fifth_degree(4).unwrap();
+    assert_eq!(at_four.sum_of_weights(), Rational::new(5, 3));
+    // In one dimension there are no diagonals, and the printed weight has nothing to break.
+    assert_eq!(printed::fifth_degree(1), fifth_degree(1));
+}
+
+#[test]
+fn printed_simplex_weights_of_11_break_the_zeroth_moment() {
+    let sums = [(2, 23, 24), (3, 22, 25), (4, 4, 5)];
+    for (n, numerator, denominator) in sums {
+        let sum = printed::simplex_11(n).unwrap().sum_of_weights();
+        assert_eq!(sum, Rational::new(numerator, denominator));
+    }
+    for n in 2..=10 {
+        let as_printed = printed::simplex_11(n).unwrap();
+        let exact = whole(n);
+        let sum = (whole(7) * exact.pow(2) + whole(7) * exact.clone() + whole(4))
+            / ((exact.clone() + whole(1)) * (exact + whole(2)).pow(2));
+        assert_eq!(as_printed.sum_of_weights(), sum);
+        assert_eq!(exactness(&as_printed, 5).degree, None, "n = {n}");
+        check_simplex_is_right(n, &as_printed);
+    }
+}
+
+#[test]
+fn printed_simplex_weights_of_16_break_the_zeroth_moment() {
+    let sums = [(2, 23, 24), (3, 21, 25), (4, 7, 10)];
+    for (n, numerator, denominator) in sums {
+        let sum = printed::simplex_16(n).unwrap().sum_of_weights();
+        assert_eq!(sum, Rational::new(numerator, denominator));
+    }
+    for n in 2..=10 {
+        let as_printed = printed::simplex_16(n).unwrap();
+        let exact = whole(n);
+        let sum = (whole(11) * exact.pow(2) - exact.pow(3) + whole(2) * exact.clone() + whole(6))
+            / ((exact.clone() + whole(1)) * (exact + whole(2)).pow(2));
+        assert_eq!(as_printed.sum_of_weights(), sum);
+        assert_eq!(exactness(&as_printed, 5).degree, None, "n = {n}");
+        check_simplex_is_right(n, &as_printed);
+        // The two printings contradict each other, but at n = 2, where both are wrong.
+        assert_eq!(as_printed == printed::simplex_11(n).unwrap(), n == 2);
+    }
+}
+
+#[test]
+fn printed_sphere_weights_do_not_sum_to_the_surface() {
+    let printed_sums = [(2, 11, 24), (3, 12, 25), (4, 7, 15)];
+    for n in 2..=10 {
+        let exact = whole(n);
+        let vertices = vertices(n);
+        let midpoints = edge_midpoints(n);
+        let sum = |vertex: Rational, edge: Rational| {
+            whole(2) * (whole(vertices.len()) * vertex + whole(midpoints.len()) * edge)
+        };
+        let as_printed = sum(
+            printed::sphere_vertex_weight(&exact),
+            printed::sphere_edge_weight(&exact),
+        );
+        let expected = exact.clone() * (whole(5) * exact.clone() + whole(1))
+            / ((exact.clone() + whole(1)) * (exact.clone() + whole(2)).pow(2));
+        assert_eq!(as_printed, expected);
+        assert_ne!(as_printed, whole(1));
+        if let Some((_, numerator, denominator)) = printed_sums.iter().find(|row| row.0 == n) {
+            assert_eq!(as_printed, Rational::new(*numerator, *denominator));
+        }
+
+        let vertex = simplex::sphere_vertex_weight(&exact);
+        let edge = simplex::sphere_edge_weight(&exact);
+        assert_eq!(sum(vertex.clone(), edge.clone()), whole(1));
+        // As parts of the surface they are right for every polynomial of degree five on the sphere, and not six.
+        let both_signs = |points: &[Vec<Surd>]| {
+            let mirrored = points.iter().map(|point| point.iter().map(|x| -x.clone()).collect());
+            points.iter().cloned().chain(mirrored).collect::<Vec<_>>()
+        };
+        let mut on_sphere = ExactRule {
+            dimension: n,
+            points: both_signs(&vertices),
+            weights: vec![vertex; 2 * vertices.len()],
+            covariance_weights: Vec::new(),
+        };
+        on_sphere.points.extend(both_signs(&midpoints));
+        on_sphere.weights.extend(vec![edge; 2 * midpoints.len()]);
+        if n <= 5 {
+            for exponents in exponents_of_degree_up_to(n, 5) {
+                assert_eq!(rule_moment(&on_sphere, &exponents), on_unit_sphere(&exponents));
+            }
+            let mut sixth = vec![0; n];
+            sixth[0] = 6;
+            assert_ne!(rule_moment(&on_sphere, &sixth), on_unit_sphere(&sixth));
+        }
+    }
+}
+
+#[test]
+fn printed_radial_second_moment_row_is_violated() {
+    for n in 1..=10 {
+        let exact = whole(n);
+        // The weights are parts of ½Γ(n/2), and so are the right sides: Γ(n/2 + 1)/Γ(n/2) = n/2. The first radius is zero.
+        let (first, second, radius_squared) = simplex::radial_rule(&exact);
+        let right_side = exact.clone() / whole(2);
+        let first_radius_squared = whole(0);
+        let as_printed = first.clone() * first_radius_squared.clone() + second.clone();
+        let corrected = first * first_radius_squared + second * radius_squared;
+        assert_ne!(as_printed, right_side, "n = {n}");
+        assert_eq!(as_printed / right_side.clone(), whole(2) / (exact + whole(2)));
+        assert_eq!(corrected, right_side, "n = {n}");
+    }
+}
+
+#[test]
+fn printed_surface_area_is_two_in_every_dimension() {
+    // √π is an unknown here, so every equality holds for all its values, and for its own. Γ(1/2) is √π itself.
+    let root_pi = RationalFunction::unknown("√π");
+    let power = |n: usize| num_traits::pow(root_pi.clone(), n);
+    let two = RationalFunction::integer(2);
+    for n in 1..=10 {
+        let as_printed = two.clone() * power(n) / power(n);
+        assert_eq!(as_printed, two, "n = {n}");
+
+        let corrected = two.clone() * power(n) / gamma_of_half(n, &root_pi);
+        // ∫ exp(−xᵀx) dx over all space is π^(n/2), and in radius and direction it is A ∫ r^(n−1) exp(−r²) dr = A Γ(n/2)/2.
+        let integral = |area: RationalFunction| area * gamma_of_half(n, &root_pi) / two.clone();
+        assert_eq!(integral(corrected), power(n), "n = {n}");
+        // The unit sphere of one dimension is two points: there, and nowhere else, the printed form is right.
+        assert_eq!(integral(as_printed) == power(n), n == 1, "n = {n}");
+    }
+    let pi = power(2);
+    let known = [
+        two.clone() * pi.clone(),
+        RationalFunction::integer(4) * pi.clone(),
+        two.clone() * pi.clone() * pi,
+    ];
+    for (n, area) in (2..).zip(known) {
+        assert_eq!(two.clone() * power(n) / gamma_of_half(n, &root_pi), area);
+    }
+}
+
+// The counting behind the proofs for every n
+
+/// The numbers of pairs in `rule::sphere` are polynomials in n of degree four at most, and the squared inner products
+/// quotients of such, so that five dimensions in which they are right prove them for all. Where two kinds of pairs have the same
+/// squared product and the same weights (zero weights at n = 4 and n = 7, midpoints at n = 3 and n = 7, the axes and diagonals at
+/// n = 2), their sum is checked; these dimensions are not among the five.
+#[test]
+fn inner_products_are_counted_as_the_points_have_them() {
+    for n in 1..=9 {
+        let exact = whole(n);
+        let third = on_axes(&exact, whole(0), &third_degree::axis_weight(&exact), exact.clone());
+        check_products(&third_degree(n).unwrap(), &third);
+        let parameters = Parameters::of_kappa(Rational::new(1, 2));
+        let lambda = parameters.lambda(n);
+        let with_centre = on_axes(
+            &exact,
+            unscented::centre_weight(&exact, &lambda),
+            &unscented::axis_weight(&exact, &lambda),
+            exact.clone() + lambda,
+        );
+        check_products(&unscented(n, &parameters).unwrap(), &with_centre);
+    }
+    for n in 2..=9 {
+        let exact = whole(n);
+        let weight = fifth_degree::diagonal_weight(&exact);
+        let on_planes = on_axes_and_diagonals(&exact, &weight);
+        check_products(&fifth_degree(n).unwrap(), &on_planes);
+        let weight = printed::diagonal_weight(&exact);
+        let as_printed = on_axes_and_diagonals(&exact, &weight);
+        check_products(&printed::fifth_degree(n).unwrap(), &as_printed);
+        let on_edges = on_simplex(&exact, &simplex::edge_weight(&exact));
+        check_products(&simplex(n).unwrap(), &on_edges);
+    }
+}
+
+#[test]
+fn harmonic_sums_and_moments_find_the_same_degree() {
+    for n in 2..=8 {
+        let exact = whole(n);
+        let on_planes = on_axes_and_diagonals(&exact, &fifth_degree::diagonal_weight(&exact));
+        assert_eq!(on_planes.degree(), Some(5));
+        let on_edges = on_simplex(&exact, &simplex::edge_weight(&exact));
+        assert_eq!(on_edges.degree(), Some(5));
+        let weight = third_degree::axis_weight(&exact);
+        let third = on_axes(&exact, whole(0), &weight, exact.clone());
+        assert_eq!(third.degree(), Some(3));
+        let as_printed = on_axes_and_diagonals(&exact, &printed::diagonal_weight(&exact));
+        assert_eq!(as_printed.degree(), None);
+    }
+}
+
+// Rules as doubles
+
+#[test]
+fn rules_become_the_nearest_doubles() {
+    for exact in all_rules(4) {
+        let rule = Rule::<f64, 4>::from_exact(&exact).unwrap();
+        for (double_point, point) in rule.points.iter().zip(&exact.points) {
+            for (double, coordinate) in double_point.iter().zip(point) {
+                check_nearest(*double, coordinate);
+            }
+        }
+        let weights = rule.weights.iter().zip(&exact.weights);
+        let covariance_weights = rule.covariance_weights.iter().zip(&exact.covariance_weights);
+        for (double, weight) in weights.chain(covariance_weights) {
+            check_nearest(*double, &surd(weight));
+        }
+    }
+    assert!(Rule::<f64, 3>::from_exact(&fifth_degree(4).unwrap()).is_err());
+}
+
+// Matrices
+
+#[test]
+fn the_cholesky_factor_times_its_transpose_is_the_matrix() {
+    // Small integers: every product, sum, quotient and root on the way is an integer, and a double holds it exactly.
+    let mut draw = Integers::new();
+    for _ in 0..100 {
+        check_cholesky::<1>(&mut draw);
+        check_cholesky::<2>(&mut draw);
+        check_cholesky::<4>(&mut draw);
+        check_cholesky::<6>(&mut draw);
+    }
+}
+
+#[test]
+fn cholesky_reads_the_lower_triangle_only() {
+    let lower = matrix![4.0, f64::NAN; 2.0, 10.0];
+    assert_eq!(cholesky(&lower).unwrap(), matrix![2.0, 0.0; 1.0, 3.0]);
+    assert_eq!(ldl(&lower).diagonal, vector![4.0, 9.0]);
+}
+
+#[test]
+fn a_matrix_that_is_not_positive_definite_has_no_cholesky_factor() {
+    let refused = |pivot, dimension, decided| NotPositiveDefinite {
+        pivot,
+        dimension,
+        decided,
+    };
+    let check2 = |matrix: SMatrix<f64, 2, 2>, expected: &NotPositiveDefinite| {
+        assert_eq!(cholesky(&matrix).unwrap_err(), *expected);
+        assert_eq!(check_positive_definite(&ldl(&matrix)).unwrap_err(), *expected);
+    };
+    check2(matrix![0.0, 0.0; 0.0, 1.0], &refused(0, 2, true));
+    check2(matrix![-1.0, 0.0; 0.0, 1.0], &refused(0, 2, true));
+    check2(matrix![1.0, 2.0; 2.0, 1.0], &refused(1, 2, true));
+    check2(matrix![4.0, 2.0; 2.0, 1.0], &refused(1, 2, true)); // singular
+    check2(matrix![f64::NAN, 0.0; 0.0, 1.0], &refused(0, 2, false));
+    check2(matrix![1.0, 0.0; f64::NAN, 1.0], &refused(1, 2, false));
+    // Rank two in four dimensions: the pivots stop at the second row.
+    let rank_two = acceleration_noise(&1.0, &2.0);
+    assert_eq!(cholesky(&rank_two).unwrap_err(), refused(1, 4, true));
+    assert_eq!(
+        refused(1, 4, true).to_string(),
+        "is not positive definite: pivot 2 of 4 is not positive"
+    );
+    assert_eq!(
+        refused(0, 2, false).to_string(),
+        "is not positive definite: pivot 1 of 2 is not a number, or of undecided sign"
+    );
+    // And one that is.
+    assert!(cholesky(&matrix![2.0, 1.0; 1.0, 1.0]).is_ok());
+    assert!(check_positive_definite(&ldl(&matrix![2.0, 1.0; 1.0, 1.0])).is_ok());
+}
+
+#[test]
+fn the_ldl_factors_solve_exactly_in_rationals() {
+    let mut draw = Integers::new();
+    for _ in 0..20 {
+        let lower = draw.unit_lower::<5>().map(|x| Rational::new(x, 3));
+        let unit = SMatrix::<Rational, 5, 5>::from_fn(|i, j| if i == j { whole(1) } else { lower[(i, j)].clone() });
+        // Any pivots but zero: the factorisation does not need a positive definite matrix.
+        let diagonal = SVector::<Rational, 5>::from_fn(|_, _| Rational::new(draw.up_to(9) * 2 + 1, draw.up_to(4) + 5));
+        let matrix = &unit * SMatrix::from_diagonal(&diagonal) * unit.transpose();
+        let factors = ldl(&matrix);
+        assert_eq!(factors.lower, unit);
+        assert_eq!(factors.diagonal, diagonal);
+
+        let right = SMatrix::<Rational, 5, 2>::from_fn(|_, _| Rational::new(draw.up_to(9), 2));
+        let solution = solve(&factors, &right);
+        assert_eq!(&matrix * &solution, right);
+        let column = right.column(0).into_owned();
+        let form = (column.transpose() * solution.column(0))[(0, 0)].clone();
+        assert_eq!(quadratic_form(&factors, &column), form);
+    }
+}
+
+#[test]
+fn positive_semidefinite_matrices_of_low_rank_are_accepted_and_indefinite_ones_refused() {
+    assert!(is_positive_semidefinite(&SMatrix::<f64, 4, 4>::zeros()));
+    for interval in [1.0, 2.0, 0.1, 0.3, 0.7, 1e-3, 17.3, 1e4] {
+        for scale in [1.0, 10.0, 0.1, 1e-12, 1e9] {
+            assert!(is_positive_semidefinite(&acceleration_noise(&scale, &interval)));
+            assert!(is_positive_semidefinite(&integrated_noise(&scale, &interval)));
+            let negative = -acceleration_noise(&scale, &interval);
+            assert!(!is_positive_semidefinite(&negative));
+        }
+    }
+    // v vᵀ of integers, of rank one.
+    let mut draw = Integers::new();
+    for _ in 0..100 {
+        let vector = SVector::<f64, 5>::from_fn(|_, _| draw.up_to(9) as f64);
+        let square = vector * vector.transpose();
+        assert!(is_positive_semidefinite(&square));
+        // Less than nothing along one axis.
+        let mut less = square;
+        less[(4, 4)] -= 1.0;
+        assert!(!is_positive_semidefinite(&less));
+    }
+    for indefinite in [
+        matrix![1.0, 2.0; 2.0, 1.0],
+        matrix![1.0, 0.0; 0.0, -1.0],
+        matrix![-1.0, 0.0; 0.0, 1.0],
+        matrix![0.0, 1.0; 1.0, 0.0],
+        matrix![0.0, 1.0; 1.0, 5.0],
+        matrix![5.0, 1.0; 1.0, 0.0],
+        matrix![1.0, 1.0; 1.0, 0.999_999],
+    ] {
+        assert!(!is_positive_semidefinite(&indefinite), "{indefinite}");
+    }
+}
+
+// Motion
+
+#[test]
+fn a_turn_of_rate_zero_is_constant_velocity() {
+    for interval in [1.0, 0.1, 3.7, 1e-9, 1e9] {
+        let straight = constant_velocity(&interval);
+        assert_eq!(coordinated_turn(&0.0, &interval), straight);
+        assert_eq!(coordinated_turn(&-0.0, &interval), straight);
+        // A rate that is not zero turns, however slowly: the velocity is rotated.
+        assert_ne!(coordinated_turn(&0.01, &interval), straight);
+    }
+}
+
+// Helpers
+
+/// An integer as an exact number.
+fn whole(value: usize) -> Rational {
+    Rational::integer(i64::try_from(value).unwrap())
+}
+
+/// A rational as a surd.
+fn surd(value: &Rational) -> Surd {
+    Surd::rational(value)
+}
+
+/// The Gaussian's moment as a surd.
+fn gaussian(exponents: &[usize]) -> Surd {
+    surd(&gaussian_moment(exponents))
+}
+
+/// The mean of a monomial over the unit sphere: the Gaussian's moment without its radial part.
+fn on_unit_sphere(exponents: &[usize]) -> Surd {
+    let degree: usize = exponents.iter().sum();
+    let radial = radial_moment(&whole(exponents.len()), degree / 2);
+    surd(&(gaussian_moment(exponents) / radial))
+}
+
+/// The inner product.
+fn inner(a: &[Surd], b: &[Surd]) -> Surd {
+    let products = a.iter().zip(b).filter(|(x, y)| !x.is_zero() && !y.is_zero());
+    products.fold(Surd::zero(), |sum, (x, y)| sum + x * y)
+}
+
+/// Parameters for n dimensions: κ = 0, ½, 2 and 3 − n, and sets with α and β, some with n + λ = 3.
+fn unscented_parameters(n: usize) -> Vec<Parameters> {
+    let q = Rational::new;
+    let mut all: Vec<Parameters> = [q(0, 1), q(1, 2), q(2, 1)]
+        .into_iter()
+        .map(Parameters::of_kappa)
+        .collect();
+    all.push(Parameters::for_gaussian(n));
+    let with = |alpha, beta, kappa| Parameters { alpha, beta, kappa };
+    all.push(with(q(1, 2), q(2, 1), q(0, 1)));
+    all.push(with(q(1, 1000), q(2, 1), whole(3) - whole(n)));
+    all.push(with(q(1, 2), q(2, 1), whole(12) - whole(n)));
+    all
+}
+
+/// One rule of each kind that has a degree.
+fn all_rules(n: usize) -> Vec<ExactRule> {
+    let mut rules = vec![third_degree(n).unwrap(), fifth_degree(n).unwrap(), simplex(n).unwrap()];
+    for parameters in unscented_parameters(n) {
+        rules.push(unscented(n, &parameters).unwrap());
+    }
+    rules
+}
+
+/// All exponents of n coordinates with a sum of at most `degree`.
+fn exponents_of_degree_up_to(n: usize, degree: usize) -> Vec<Vec<usize>> {
+    if n == 0 {
+        return vec![Vec::new()];
+    }
+    let mut all = Vec::new();
+    for first in 0..=degree {
+        for mut rest in exponents_of_degree_up_to(n - 1, degree - first) {
+            rest.insert(0, first);
+            all.push(rest);
+        }
+    }
+    all
+}
+
+/// The square of the Hermite polynomial He₍m₎(x), from x²: He₍m+1₎ = x He₍m₎ − m He₍m−1₎, the odd ones carried without their x.
+fn hermite_squared(m: usize, squared: &Surd) -> Surd {
+    let (mut before, mut now) = (Surd::zero(), Surd::one());
+    for k in 0..m {
+        // From an even to an odd one the factor x is left out; from an odd to an even one it comes twice.
+        let raised = if k % 2 == 0 { now.clone() } else { squared * &now };
+        let next = raised - surd(&whole(k)) * before;
+        (before, now) = (now, next);
+    }
+    let square = now.clone() * now;
+    if m.is_multiple_of(2) { square } else { squared * square }
+}
+
+/// Γ(n/2) in terms of √π: Γ(1/2) = √π, Γ(1) = 1 and Γ(x + 1) = x Γ(x).
+fn gamma_of_half(n: usize, root_pi: &RationalFunction) -> RationalFunction {
+    let first = if n % 2 == 1 {
+        root_pi.clone()
+    } else {
+        RationalFunction::one()
+    };
+    let steps = (2 - n % 2..n).step_by(2);
+    steps.fold(first, |gamma, twice| {
+        gamma * RationalFunction::rational(&(whole(twice) / whole(2)))
+    })
+}
+
+/// The corrected simplex rule has the same points as a printed one, sums to one and is of degree two at least.
+fn check_simplex_is_right(n: usize, as_printed: &ExactRule) {
+    let corrected = simplex(n).unwrap();
+    assert_eq!(corrected.points, as_printed.points);
+    assert_eq!(corrected.sum_of_weights(), whole(1));
+    assert_eq!(exactness(&corrected, 2).degree, Some(2));
+}
+
+/// How many ordered pairs have a squared inner product and a product of weights; both as text, which is unique.
+type Pairs = BTreeMap<(String, String), Rational>;
+
+/// The pairs of a rule's points on its sphere are those of the spherical rule, and so are radius and sums of weights.
+fn check_products(rule: &ExactRule, spherical: &SphericalRule<Rational>) {
+    let mut centre = Rational::zero();
+    let mut sphere = Rational::zero();
+    let mut directions = Vec::new();
+    for (point, weight) in rule.points.iter().zip(&rule.weights) {
+        let length = inner(point, point);
+        if length.is_zero() {
+            centre += weight;
+            continue;
+        }
+        assert_eq!(length, surd(&spherical.radius_squared));
+        sphere += weight;
+        directions.push((point, weight));
+    }
+    assert_eq!(centre, spherical.centre);
+    assert_eq!(sphere, spherical.sphere);
+    assert_eq!(whole(rule.dimension), spherical.n);
+
+    let mut of_points = Pairs::new();
+    for (s, s_weight) in &directions {
+        for (t, t_weight) in &directions {
+            let product = inner(s, t) / surd(&spherical.radius_squared);
+            let squared = (product.clone() * product).as_rational().unwrap();
+            let weights = *s_weight * *t_weight / (&sphere * &sphere);
+            count(&mut of_points, &squared, &weights, &whole(1));
+        }
+    }
+    let mut of_formulas = Pairs::new();
+    for product in &spherical.products {
+        if !product.pairs.is_zero() {
+            count(&mut of_formulas, &product.squared, &product.weights, &product.pairs);
+        }
+    }
+    assert_eq!(of_points, of_formulas, "n = {}", rule.dimension);
+}
+
+/// Adds pairs to a table.
+fn count(table: &mut Pairs, squared: &Rational, weights: &Rational, pairs: &Rational) {
+    let key = (squared.to_string(), weights.to_string());
+    *table.entry(key).or_insert_with(Rational::zero) += pairs;
+}
+
+/// No neighbour of the double is nearer to the exact number than the double itself.
+fn check_nearest(double: f64, exact: &Surd) {
+    let distance = |value: f64| (surd(&Rational::from_f64(value)) - exact).abs();
+    let own = distance(double);
+    assert!(own <= distance(double.next_up()), "{double} for {exact}");
+    assert!(own <= distance(double.next_down()), "{double} for {exact}");
+}
+
+/// A lower triangular matrix of integers with a positive diagonal is the Cholesky factor of its square, exactly.
+fn check_cholesky<const N: usize>(draw: &mut Integers) {
+    let mut lower = draw.unit_lower::<N>();
+    for i in 0..N {
+        lower[(i, i)] = draw.up_to(9).abs() + 1;
+    }
+    let root = lower.map(|x| x as f64);
+    let square = root * root.transpose();
+    let factor = cholesky(&square).unwrap();
+    assert_eq!(factor, root);
+    assert_eq!(factor * factor.transpose(), square);
+    // L D Lᵀ of the same matrix is exact in rationals.
+    let exact = lower.map(|x| Rational::new(x, 1));
+    let factors = ldl(&(&exact * exact.transpose()));
+    let diagonal = SMatrix::from_diagonal(&factors.diagonal);
+    assert_eq!(
+        &factors.lower * diagonal * factors.lower.transpose(),
+        &exact * exact.transpose()
+    );
+    for i in 0..N {
+        assert_eq!(factors.diagonal[i], exact[(i, i)].pow(2));
+    }
+}
+
+/// Small integers without a pattern, the same in every run: the upper bits of a linear congruential generator (Knuth's MMIX).
+struct Integers(u64);
+
+impl Integers {
+    fn new() -> Self {
+        Self(20_160_608)
+    }
+
+    /// An integer from −bound to bound.
+    fn up_to(&mut self, bound: i64) -> i64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        i64::try_from(self.0 >> 40).unwrap() % (2 * bound + 1) - bound
+    }
+
+    /// A lower triangular matrix with ones on its diagonal.
+    fn unit_lower<const N: usize>(&mut self) -> SMatrix<i64, N, N> {
+        SMatrix::from_fn(|i, j| match i.cmp(&j) {
+            std::cmp::Ordering::Less => 0,
+            std::cmp::Ordering::Equal => 1,
+            std::cmp::Ordering::Greater => self.up_to(9),
+        })
+    }
+}

@@ -1,0 +1,1018 @@
+//! Goal: the whole cycle obeys the laws of what it is: a set of filters, a Markov chain between them, Bayes' rule, and a scene that
+//! can be mirrored, turned and measured in other units.
+//!
+//! Method: whole runs in doubles through [`immaculate::imm::Imm`] (constant velocity and two turns, n = 4, m = 2, linear and
+//! range-bearing measurements, every filter, steps without a detection among them), each compared with another run that a law says
+//! must agree. Kind of evidence: property. Where a law holds for rounded arithmetic too, the runs agree to the last bit; elsewhere the
+//! tolerance is the rounding that [`common::rounding_of`] derives, in standard deviations.
+
+#![allow(
+    clippy::needless_range_loop,
+    reason = "i and j are the numbers of modes, in several lists at once"
+)]
+
+mod common;
+
+use common::{
+    CHAIN, ROUNDOFF, RULES, Scene, TURN_RATE, all_scenes, bits, bits_of, bits_of_mode, distance, distance_of_runs,
+    linear_scene, linear_scene_with, mode, polar_scene_seen_from, rounding_of,
+};
+use immaculate::filter::{cubature, kalman, raw, update};
+use immaculate::gaussian::{Gaussian, log_density, mixture_covariance, mixture_mean};
+use immaculate::imm::{Equations, Step};
+use immaculate::matrix::{cholesky, is_positive_semidefinite, ldl};
+use immaculate::model::Measurement;
+use immaculate::model::angle::wrap;
+use immaculate::model::motion::coordinated_turn;
+use immaculate::number::Rational;
+use immaculate::rule::Rule;
+use immaculate::rule::unscented::{Parameters, unscented};
+use nalgebra::{Matrix4, SVector, Vector2, Vector4, vector};
+use proptest::prelude::*;
+use std::f64::consts::PI;
+
+// One filter
+
+/// One mode is the filter inside it, bit for bit: to mix one estimate with itself rounds nothing.
+#[test]
+fn one_mode_is_the_plain_filter() {
+    for (name, scene) in all_scenes() {
+        for j in 0..3 {
+            let alone = with_modes(&scene, &[j]);
+            let plain = plain_run(&alone, 0);
+            for (step, plain) in alone.run().iter().zip(&plain) {
+                assert_eq!(bits_of(&step.updated[0]), bits_of(plain), "{name}");
+                assert_eq!(bits_of(&step.combined), bits_of(plain), "{name}");
+                assert_eq!(
+                    bits_of(&step.combined_prediction),
+                    bits_of(&step.predicted[0]),
+                    "{name}"
+                );
+                assert_eq!(step.mode_probabilities, [1.0], "{name}");
+            }
+        }
+    }
+}
+
+/// Under the identity no mode is left for another: each runs by itself, bit for bit, and only the probabilities know of the others.
+#[test]
+fn the_identity_transition_never_mixes() {
+    for (name, mut scene) in all_scenes() {
+        scene.problem.transition = identity_chain(3);
+        let run = scene.run();
+        for j in 0..3 {
+            let plain = plain_run(&scene, j);
+            for (step, plain) in run.iter().zip(&plain) {
+                assert_eq!(bits_of(&step.updated[j]), bits_of(plain), "{name}");
+                for i in 0..3 {
+                    let expected = f64::from(i == j);
+                    assert_eq!(bits([&step.mixing_probabilities[j][i]]), bits([&expected]));
+                }
+            }
+        }
+        // The probabilities are those of three models of which one is right all the time: the product of all likelihoods.
+        let mut log_weights: Vec<f64> = scene.initial.mode_probabilities.iter().map(|p| p.ln()).collect();
+        for step in run.iter().filter(|step| step.measurement.is_some()) {
+            for j in 0..3 {
+                log_weights[j] += step.log_likelihoods[j];
+            }
+        }
+        let greatest = log_weights.iter().copied().fold(f64::MIN, f64::max);
+        let sum: f64 = log_weights.iter().map(|w| (w - greatest).exp()).sum();
+        for j in 0..3 {
+            let expected = (log_weights[j] - greatest).exp() / sum;
+            let probability = run.last().unwrap().mode_probabilities[j];
+            // 30 steps of sums of logarithms below 10³ in size, rounded a few times each.
+            assert!((probability - expected).abs() <= 30.0 * 10.0 * 1000.0 * ROUNDOFF);
+        }
+    }
+}
+
+/// Modes that are the same are one filter, whatever the chain and the probabilities are. To mix an estimate with itself under rounded
+/// weights is a rounding of the estimate, so the tolerance is that of a run.
+#[test]
+fn identical_modes_are_the_plain_filter_for_any_transition_matrix() {
+    let asymmetric = CHAIN.map(|row| row.to_vec()).to_vec();
+    let cyclic = vec![vec![0.0, 1.0, 0.0], vec![0.0, 0.0, 1.0], vec![1.0, 0.0, 0.0]];
+    let absorbing = vec![vec![0.5, 0.3, 0.2], vec![0.0, 0.6, 0.4], vec![0.0, 0.0, 1.0]];
+    for chain in [asymmetric, cyclic, absorbing] {
+        for (name, scene) in all_scenes() {
+            let mut scene = with_identical_modes(&scene);
+            scene.problem.transition.clone_from(&chain);
+            let run = scene.run();
+            let plain = plain_run(&scene, 0);
+            let allowed = rounding_of(&run);
+            for (step, plain) in run.iter().zip(&plain) {
+                assert!(distance(&step.combined, plain) <= allowed, "{name}");
+                for estimate in &step.updated {
+                    assert!(distance(estimate, plain) <= allowed, "{name}");
+                }
+            }
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 100, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// The same for random chains and random probabilities at the start.
+    #[test]
+    fn identical_modes_are_the_plain_filter_for_random_transition_matrices(
+        rows in [probabilities(), probabilities(), probabilities()], start in probabilities(), polar: bool,
+    ) {
+        let scene = if polar { polar_scene_seen_from([0.0, 0.0], "simplex-5") } else { linear_scene() };
+        let mut scene = with_identical_modes(&scene);
+        scene.problem.transition = rows.to_vec();
+        scene.initial.mode_probabilities = start;
+        let run = scene.run();
+        let allowed = rounding_of(&run);
+        for (step, plain) in run.iter().zip(&plain_run(&scene, 0)) {
+            prop_assert!(distance(&step.combined, plain) <= allowed);
+        }
+    }
+}
+
+/// Three probabilities that sum to one exactly: multiples of 1/64, zero and one among them.
+fn probabilities() -> impl Strategy<Value = Vec<f64>> {
+    (0..=64_u32, 0..=64_u32).prop_map(|(a, b)| {
+        let (low, high) = (a.min(b), a.max(b));
+        [low, high - low, 64 - high].map(|part| f64::from(part) / 64.0).to_vec()
+    })
+}
+
+// The chain
+
+/// When all modes explain the measurement equally well it says nothing about the mode: the probabilities follow the chain. The
+/// likelihoods of identical modes differ by the rounding of their estimates only.
+#[test]
+fn measurements_that_fit_all_modes_alike_let_the_probabilities_follow_the_chain() {
+    for (name, scene) in all_scenes() {
+        let scene = with_identical_modes(&scene);
+        let run = scene.run();
+        let allowed = rounding_of(&run);
+        let mut expected = scene.initial.mode_probabilities.clone();
+        for step in &run {
+            expected = along_the_chain(&CHAIN.map(|row| row.to_vec()), &expected);
+            for (probability, expected) in step.mode_probabilities.iter().zip(&expected) {
+                assert!((probability - expected).abs() <= allowed, "{name}");
+            }
+        }
+        // After thirty steps nearly nothing is left of the start: the chain's own distribution, by the transposed chain another.
+        let transposed = transposed(&CHAIN.map(|row| row.to_vec()));
+        let wrong = (0..30).fold(vec![0.625, 0.25, 0.125], |p, _| along_the_chain(&transposed, &p));
+        assert!((wrong[0] - expected[0]).abs() > 0.05, "{wrong:?} {expected:?}");
+    }
+}
+
+/// A step without a detection learns nothing: the probabilities follow the chain, and the estimates are the predicted ones, bit for
+/// bit. What comes from a measurement has no value, also when it had one a step before.
+#[test]
+fn steps_without_a_detection_predict_and_nothing_else() {
+    for (name, scene) in all_scenes() {
+        let run = scene.run();
+        let missed: Vec<usize> = (1..run.len()).filter(|&k| run[k].measurement.is_none()).collect();
+        assert_eq!(missed, [6, 14, 15, 16], "one alone, and three in a row");
+        for k in missed {
+            let (before, step) = (&run[k - 1], &run[k]);
+            let chain = &scene.problem.transition;
+            let expected = along_the_chain(chain, &before.mode_probabilities);
+            assert_eq!(step.mode_probabilities, expected, "{name}");
+            assert_eq!(step.predicted_mode_probabilities, expected, "{name}");
+            assert_eq!(step.updated, step.predicted, "{name}");
+            assert_eq!(step.combined, step.combined_prediction, "{name}");
+            assert!(step.log_evidence.is_nan());
+            for j in 0..3 {
+                let measured = step.innovations[j]
+                    .iter()
+                    .chain(&step.predicted_measurements[j])
+                    .chain(&step.innovation_covariances[j])
+                    .chain(&step.cross_covariances[j])
+                    .chain(&step.gains[j])
+                    .chain([&step.log_likelihoods[j]])
+                    .chain(step.measured_points[j].iter().flatten())
+                    .chain(step.predicted_points[j].iter().flatten())
+                    .chain(&step.predicted_square_roots[j]);
+                assert!(measured.into_iter().all(|value| value.is_nan()), "{name}");
+            }
+        }
+    }
+}
+
+/// The first step mixes like every other one: step 0 is an estimate after a measurement.
+#[test]
+fn the_first_step_mixes() {
+    for (name, scene) in all_scenes() {
+        let first = &scene.run()[0];
+        let initial = &scene.initial;
+        let predicted = along_the_chain(&scene.problem.transition, &initial.mode_probabilities);
+        assert_eq!(first.predicted_mode_probabilities, predicted, "{name}");
+        for j in 0..3 {
+            for i in 0..3 {
+                let joint = CHAIN[i][j] * initial.mode_probabilities[i];
+                assert_eq!(
+                    bits([&first.mixing_probabilities[j][i]]),
+                    bits([&(joint / predicted[j])])
+                );
+            }
+            let mean = mixture_mean(&first.mixing_probabilities[j], &initial.modes);
+            let covariance = mixture_covariance(&first.mixing_probabilities[j], &initial.modes, &mean);
+            let mixed = Gaussian { mean, covariance };
+            assert_eq!(first.mixed[j], mixed, "{name}");
+            // It is not the mode's own estimate.
+            assert!(distance(&mixed, &initial.modes[j]) > 0.01, "{name}");
+        }
+    }
+}
+
+/// Where all rows of the chain are equal the mode before says nothing about the mode now, so all modes start from the same mixture. Rows
+/// of powers of two scale exactly: bit for bit. Other rows round each weight once.
+#[test]
+fn equal_rows_give_every_mode_the_same_input() {
+    for (name, scene) in all_scenes() {
+        let with_row = |row: [f64; 3]| {
+            let mut scene = scene.clone();
+            scene.problem.transition = vec![row.to_vec(); 3];
+            scene.run()
+        };
+        for step in with_row([0.5, 0.25, 0.25]) {
+            assert_eq!(bits_of(&step.mixed[1]), bits_of(&step.mixed[0]), "{name}");
+            assert_eq!(bits_of(&step.mixed[2]), bits_of(&step.mixed[0]), "{name}");
+        }
+        let run = with_row([0.7, 0.2, 0.1]);
+        let allowed = rounding_of(&run);
+        for step in &run {
+            assert!(distance(&step.mixed[1], &step.mixed[0]) <= allowed, "{name}");
+            assert!(distance(&step.mixed[2], &step.mixed[0]) <= allowed, "{name}");
+        }
+        // Other chains do not.
+        assert!(distance(&scene.run()[5].mixed[1], &scene.run()[5].mixed[0]) > 0.01);
+    }
+}
+
+/// Mode 3 can be reached from mode 2 alone, and mode 2 from mode 1; all probability starts on mode 1. So mode 3 is out of reach in step
+/// 1, keeps its own estimate, and has no weight; from step 2 on it is reached, and then nothing of its own start is left, whatever
+/// that was.
+#[test]
+fn a_mode_that_cannot_be_reached_keeps_its_own_estimate_and_no_weight() {
+    for (name, mut scene) in all_scenes() {
+        scene.problem.transition = vec![vec![0.75, 0.25, 0.0], vec![0.0, 0.5, 0.5], vec![0.0, 0.0, 1.0]];
+        scene.initial.mode_probabilities = vec![1.0, 0.0, 0.0];
+        let run = scene.run();
+
+        let first = &run[0];
+        assert_eq!(first.mixing_probabilities[2], [0.0, 0.0, 1.0], "{name}");
+        assert_eq!(first.mixed[2], scene.initial.modes[2], "{name}");
+        assert_eq!(first.predicted_mode_probabilities[2].to_bits(), 0);
+        assert_eq!(first.mode_probabilities[2].to_bits(), 0);
+        assert!(first.mode_probabilities[1] > 0.0, "{name}");
+        // It is filtered all the same, and ready.
+        assert!(first.updated[2].mean.iter().all(|entry| entry.is_finite()));
+
+        let second = &run[1];
+        assert_eq!(second.mixing_probabilities[2], [0.0, 1.0, 0.0], "{name}");
+        assert_eq!(second.mixed[2], first.updated[1], "{name}");
+        assert!(second.mode_probabilities[2] > 0.0, "{name}");
+
+        // Its own start, and mode 2's, which nothing could come from, are without any effect on the answer.
+        let mut elsewhere = scene.clone();
+        for j in [1, 2] {
+            elsewhere.initial.modes[j].mean = vector![-3e4, 1.0, 2e4, 50.0];
+            elsewhere.initial.modes[j].covariance *= 4.0;
+        }
+        let other = elsewhere.run();
+        assert_eq!(bits_of(&other[0].combined), bits_of(&first.combined), "{name}");
+        for (a, b) in other.iter().zip(&run).skip(1) {
+            assert_eq!(bits_of(&a.combined), bits_of(&b.combined), "{name}");
+            assert_eq!(a.mode_probabilities, b.mode_probabilities, "{name}");
+        }
+    }
+}
+
+// Bayes' rule
+
+/// A measurement forty and more standard deviations away: every likelihood is zero as a double, and the ratios of the probabilities are
+/// what they were.
+#[test]
+fn likelihoods_that_underflow_a_double_leave_the_probabilities_right() {
+    for (name, scene) in all_scenes() {
+        let mut filter = scene.filter().unwrap();
+        filter.step(scene.measurements[0].as_ref()).unwrap();
+        let mut z = scene.measurements[1].unwrap();
+        z[0] += 1e4;
+        let step = filter.step(Some(&z)).unwrap();
+        let logs = &step.log_likelihoods;
+        for j in 0..3 {
+            assert_eq!(logs[j].exp().to_bits(), 0, "{name}: {}", logs[j]);
+            assert!(step.mode_probabilities[j].is_finite());
+        }
+        // The logarithm of the sum of Lⱼ cⱼ is off by some roundings of a number below |ln L|.
+        let size = logs.iter().map(|log| log.abs()).fold(0.0, f64::max);
+        let allowed = 8.0 * ROUNDOFF * size;
+        let sum: f64 = step.mode_probabilities.iter().sum();
+        assert!((sum - 1.0).abs() <= allowed, "{name}: {sum}");
+        for j in 1..3 {
+            let ratio = step.mode_probabilities[j] / step.mode_probabilities[0];
+            let prior = &step.predicted_mode_probabilities;
+            let expected = (logs[j] - logs[0]).exp() * prior[j] / prior[0];
+            assert!((ratio / expected - 1.0).abs() <= allowed, "{name}: {ratio} {expected}");
+        }
+        // The same from likelihoods as doubles has no answer: 0/0.
+        let likelihoods: Vec<f64> = logs.iter().map(|log| log.exp()).collect();
+        let naive = likelihoods[0] / likelihoods.iter().sum::<f64>();
+        assert!(naive.is_nan());
+    }
+}
+
+/// A constant common to all modes cancels: units, or a forgotten 2π. Adding 64 to logarithms of about 10 rounds each once, by 64u.
+#[test]
+fn a_factor_common_to_all_likelihoods_changes_no_probability() {
+    for (name, scene) in all_scenes() {
+        let run = scene.run();
+        let mut scaled = scene.clone();
+        scaled.equations.log_likelihood =
+            |_, _, now, j| log_density(&now.innovations[j], &ldl(&now.innovation_covariances[j])) + 64.0;
+        let scaled = scaled.run();
+        let allowed = rounding_of(&run);
+        assert!(distance_of_runs(&scaled, &run) <= allowed, "{name}");
+        let evidence = scaled[0].log_evidence - run[0].log_evidence;
+        assert!((evidence - 64.0).abs() <= 8.0 * 64.0 * ROUNDOFF, "{name}");
+        // A factor that differs between modes does not cancel.
+        let mut unequal = scene.clone();
+        unequal.equations.log_likelihood = |_, _, now, j| {
+            let factor = if j == 0 { 1.0 } else { 0.0 };
+            log_density(&now.innovations[j], &ldl(&now.innovation_covariances[j])) + factor
+        };
+        assert!(distance_of_runs(&unequal.run(), &run) > 0.01, "{name}");
+    }
+}
+
+/// All that are called probabilities are: not negative, and one together. Mixing probabilities are quotients, and their sum is off by a
+/// few roundings; mode probabilities are exponentials of differences of logarithms, which are below 100 in these runs and
+/// rounded in proportion, and predicted ones inherit that.
+#[test]
+fn probabilities_sum_to_one() {
+    for (name, scene) in all_scenes() {
+        for step in scene.run() {
+            let mixing = step.mixing_probabilities.iter().map(|of_mode| (of_mode, 1.0));
+            let modes = [
+                (&step.predicted_mode_probabilities, 100.0),
+                (&step.mode_probabilities, 100.0),
+            ];
+            for (probabilities, size) in mixing.chain(modes) {
+                let sum: f64 = probabilities.iter().sum();
+                assert!((sum - 1.0).abs() <= 8.0 * ROUNDOFF * size, "{name}: {sum}");
+                assert!(probabilities.iter().all(|p| (0.0..=1.0).contains(p)), "{name}");
+            }
+        }
+    }
+}
+
+// Moments
+
+/// What is output before the measurement is the mixture of the predictions under the predicted mode probabilities; the probabilities of
+/// the step before, or after the measurement, give something else.
+#[test]
+fn the_combined_prediction_is_weighted_with_the_predicted_mode_probabilities() {
+    for (name, scene) in all_scenes() {
+        let mut before = scene.initial.mode_probabilities.clone();
+        let mut is_different = [false, false];
+        for step in scene.run() {
+            let mixture = |weights: &[f64]| {
+                let mut mean = Vector4::zeros();
+                for j in 0..3 {
+                    mean += step.predicted[j].mean * weights[j];
+                }
+                let mut covariance = Matrix4::zeros();
+                for j in 0..3 {
+                    let away = step.predicted[j].mean - mean;
+                    covariance += (step.predicted[j].covariance + away * away.transpose()) * weights[j];
+                }
+                Gaussian { mean, covariance }
+            };
+            let expected = mixture(&step.predicted_mode_probabilities);
+            assert_eq!(step.combined_prediction, expected, "{name}");
+            is_different[0] |= distance(&mixture(&before), &expected) > 1e-3;
+            is_different[1] |= distance(&mixture(&step.mode_probabilities), &expected) > 1e-3;
+            before.clone_from(&step.mode_probabilities);
+        }
+        assert_eq!(is_different, [true, true], "{name}");
+    }
+}
+
+/// The spread of the modes' means is added to the mean of their covariances, and is positive semidefinite; it is what tells the user
+/// that the modes disagree.
+#[test]
+fn the_combined_covariance_is_at_least_the_mean_of_the_covariances() {
+    for (name, scene) in all_scenes() {
+        let mut greatest_spread = 0.0_f64;
+        for step in scene.run() {
+            let mut within = Matrix4::zeros();
+            for j in 0..3 {
+                within += step.updated[j].covariance * step.mode_probabilities[j];
+            }
+            let spread = step.combined.covariance - within;
+            // The difference of two nearly equal matrices carries their rounding: ten roundings of the diagonal.
+            let rounding = step.combined.covariance.diagonal() * (10.0 * 16.0 * ROUNDOFF);
+            let symmetric = (spread + spread.transpose()) * 0.5;
+            let lifted = symmetric + Matrix4::from_diagonal(&rounding);
+            assert!(is_positive_semidefinite(&lifted), "{name}: {spread}");
+            greatest_spread = greatest_spread.max(spread[(0, 0)] / step.combined.covariance[(0, 0)]);
+        }
+        assert!(greatest_spread > 0.01, "{name}: the modes never disagree");
+    }
+}
+
+/// The combined estimates are for output: no filter ever starts from them.
+#[test]
+fn the_combined_estimate_is_output_only() {
+    for (name, scene) in all_scenes() {
+        let mut other = scene.clone();
+        other.equations.combined_mean = |_, _, _| vector![1.0, 2.0, 3.0, 4.0];
+        other.equations.combined_covariance = |_, _, _| Matrix4::zeros();
+        other.equations.combined_prediction_mean = |_, _, _| vector![4.0, 3.0, 2.0, 1.0];
+        other.equations.combined_prediction_covariance = |_, _, _| Matrix4::zeros();
+        for (a, b) in other.run().iter().zip(&scene.run()) {
+            for j in 0..3 {
+                assert_eq!(bits_of_mode(a, j), bits_of_mode(b, j), "{name}");
+            }
+            assert_eq!(a.mode_probabilities, b.mode_probabilities, "{name}");
+        }
+    }
+}
+
+/// Step 0 is the initial estimate, and its combination the mixture of it.
+#[test]
+fn step_zero_is_the_initial_estimate() {
+    for (name, scene) in all_scenes() {
+        let filter = scene.filter().unwrap();
+        let (zero, initial) = (filter.current(), &scene.initial);
+        assert_eq!((zero.step, zero.measurement), (0, None));
+        assert_eq!(zero.updated, initial.modes, "{name}");
+        assert_eq!(zero.mode_probabilities, initial.mode_probabilities);
+        let mean = mixture_mean(&initial.mode_probabilities, &initial.modes);
+        let covariance = mixture_covariance(&initial.mode_probabilities, &initial.modes, &mean);
+        assert_eq!(zero.combined, Gaussian { mean, covariance }, "{name}");
+    }
+}
+
+// Symmetries
+
+/// To list the modes in another order is to list the answers in that order. Two sums of three numbers agree to the last bit when the
+/// first two are exchanged, and to a rounding otherwise.
+#[test]
+fn permuting_the_modes_permutes_the_answer() {
+    for (name, scene) in all_scenes() {
+        let run = scene.run();
+        for order in [[1, 0, 2], [1, 2, 0], [2, 1, 0], [0, 2, 1], [2, 0, 1]] {
+            let permuted = with_modes(&scene, &order).run();
+            let is_exchange_of_the_first_two = order == [1, 0, 2];
+            let allowed = rounding_of(&run);
+            for (a, b) in permuted.iter().zip(&run) {
+                for (place, &j) in order.iter().enumerate() {
+                    if is_exchange_of_the_first_two {
+                        assert_eq!(bits_of_mode(a, place), bits_of_mode(b, j), "{name}");
+                    }
+                    let (a, b) = (
+                        (&a.updated[place], a.mode_probabilities[place]),
+                        (&b.updated[j], b.mode_probabilities[j]),
+                    );
+                    assert!(distance(a.0, b.0) <= allowed, "{name}");
+                    assert!((a.1 - b.1).abs() <= allowed, "{name}");
+                }
+                assert!(distance(&a.combined, &b.combined) <= allowed, "{name}");
+            }
+        }
+        // To permute the modes and not the chain is another problem.
+        let mut wrong = with_modes(&scene, &[1, 2, 0]);
+        wrong.problem.transition.clone_from(&scene.problem.transition);
+        let (wrong, right) = (&wrong.run()[29], &run[29]);
+        assert!(distance(&wrong.combined, &right.combined) > 0.01, "{name}");
+    }
+}
+
+/// In the mirror (y → −y) a left turn is a right turn, a bearing has the other sign, and so has all that follows. Signs round nothing:
+/// with the rule's points mirrored too, both runs agree to the last bit. Rules that are their own mirror image need no mirror, but
+/// add in another order. The simplex has no such symmetry: what it leaves out of a range-bearing measurement differs.
+#[test]
+fn mirroring_the_scene_mirrors_the_answer() {
+    // The motion first.
+    let mirrored_turn = MIRROR() * coordinated_turn(&TURN_RATE, &1.0) * MIRROR();
+    assert_eq!(mirrored_turn, coordinated_turn(&-TURN_RATE, &1.0));
+
+    for (name, scene) in all_scenes() {
+        let run = scene.run();
+        let mut in_the_mirror = mirrored(&scene);
+        if let Some(rule) = &mut in_the_mirror.problem.rule {
+            for point in &mut rule.points {
+                *point = MIRROR() * *point;
+            }
+        }
+        for (a, b) in in_the_mirror.run().iter().zip(&run) {
+            for j in 0..3 {
+                assert_eq!(mirror_image(&a.mixed[j]), b.mixed[j], "{name}");
+                assert_eq!(mirror_image(&a.predicted[j]), b.predicted[j], "{name}");
+                assert_eq!(mirror_image(&a.updated[j]), b.updated[j], "{name}");
+            }
+            assert_eq!(mirror_image(&a.combined), b.combined, "{name}");
+            assert_eq!(a.mode_probabilities, b.mode_probabilities, "{name}");
+        }
+
+        // With the rule as it is.
+        let mut apart = 0.0_f64;
+        for (a, b) in mirrored(&scene).run().iter().zip(&run) {
+            apart = apart.max(distance(&mirror_image(&a.combined), &b.combined));
+        }
+        if name == "polar, simplex-5" {
+            assert!(apart > rounding_of(&run), "{name}: {apart}");
+        } else {
+            assert!(apart <= rounding_of(&run), "{name}: {apart}");
+        }
+
+        // A mirrored scene with the turns as they were is another scene.
+        let mut wrong = mirrored(&scene);
+        wrong.problem.modes.clone_from(&scene.problem.modes);
+        let image = mirror_image(&wrong.run()[20].combined);
+        assert!(distance(&image, &run[20].combined) > 0.01, "{name}");
+    }
+}
+
+/// A scene is turned by half a turn, so that its bearings cross ±π where they crossed 0, and the answer turns with it. Every rule here is
+/// its own image under ξ → −ξ. The angle π is rounded, by u·π; in deviations of the bearing that is less than the rounding of the
+/// position.
+///
+/// The sensor stands at several places, so that the target crosses the cut at several times.
+#[test]
+fn the_answer_does_not_depend_on_where_the_bearing_is_cut() {
+    for rule in RULES {
+        let mut is_caught = [false; 3];
+        for north in [1800.0, 2200.0, 2600.0, 3000.0, 3100.0, 3200.0, 3400.0] {
+            let scene = polar_scene_seen_from([0.0, north], rule);
+            let run = scene.run();
+            let mut turned = scene.clone();
+            turned.problem.measurement = common::range_bearing_from([0.0, -north]);
+            for estimate in &mut turned.initial.modes {
+                estimate.mean = -estimate.mean;
+            }
+            for z in turned.measurements.iter_mut().flatten() {
+                z[1] = wrap(z[1] + PI);
+            }
+            // The scene is worth its name: the bearings lie on both sides of the cut.
+            let bearings: Vec<f64> = turned.measurements.iter().flatten().map(|z| z[1]).collect();
+            assert!(bearings.iter().any(|&bearing| bearing > 3.0));
+            assert!(bearings.iter().any(|&bearing| bearing < -3.0));
+
+            let allowed = rounding_of(&run);
+            let apart = |scene: &Scene| match scene.try_run() {
+                Ok(answer) => distance_of_runs(&turned_back(&answer), &run),
+                Err(_) => f64::INFINITY,
+            };
+            assert!(apart(&turned) <= allowed, "{rule}: {}", apart(&turned));
+
+            // A bearing that is told a turn away is the same bearing.
+            let mut a_turn_away = turned.clone();
+            for z in a_turn_away.measurements.iter_mut().flatten() {
+                z[1] += if z[1] < 0.0 { 2.0 * PI } else { -2.0 * PI };
+            }
+            assert!(apart(&a_turn_away) <= allowed, "{rule}: {}", apart(&a_turn_away));
+
+            // Without wrapping the innovation, the points' mean or the points' differences it is another answer, at one of the
+            // crossings at least.
+            let mut without_wrap = [turned.clone(), turned.clone(), turned.clone()];
+            without_wrap[0].equations.innovation =
+                |_, _, now, j| now.measurement.unwrap() - now.predicted_measurements[j];
+            without_wrap[1].equations.predicted_measurement = |problem, _, now, j| {
+                let weights = &problem.rule.as_ref().unwrap().weights;
+                cubature::weighted_mean(weights, &now.measured_points[j])
+            };
+            without_wrap[2].equations = Equations::raw_cubature();
+            for (caught, scene) in is_caught.iter_mut().zip(&without_wrap) {
+                *caught |= apart(scene) > 0.01;
+            }
+        }
+        assert_eq!(is_caught, [true; 3], "{rule}");
+    }
+}
+
+/// Metres or units of 1024 metres: powers of two scale every number exactly. Only the logarithm of the likelihood, a density per square
+/// metre, is another number and so rounded otherwise. It moves no probability if there is one mode; with three the
+/// probabilities are off by a rounding.
+#[test]
+fn other_units_of_length_scale_the_answer() {
+    for (name, scene) in all_scenes() {
+        let scale = 1.0 / 1024.0;
+        let alone = with_modes(&scene, &[1]);
+        for (a, b) in in_units(&alone, scale).run().iter().zip(&alone.run()) {
+            assert_eq!(a.mixed[0], scaled(&b.mixed[0], scale), "{name}");
+            assert_eq!(a.predicted[0], scaled(&b.predicted[0], scale), "{name}");
+            assert_eq!(a.updated[0], scaled(&b.updated[0], scale), "{name}");
+            assert_eq!(a.combined, scaled(&b.combined, scale), "{name}");
+        }
+        let run = scene.run();
+        let other = in_units(&scene, scale).run();
+        // Up to the likelihood also three modes agree to the last bit.
+        for j in 0..3 {
+            assert_eq!(other[0].updated[j], scaled(&run[0].updated[j], scale), "{name}");
+        }
+        for (a, b) in other.iter().zip(&run) {
+            let apart = distance(&scaled(&a.combined, 1.0 / scale), &b.combined);
+            assert!(apart <= rounding_of(&run), "{name}: {apart}");
+        }
+        // A kilometre is not a power of two of metres, and differs by roundings.
+        let kilometres = in_units(&scene, 1e-3).run();
+        for (a, b) in kilometres.iter().zip(&run) {
+            let apart = distance(&scaled(&a.combined, 1e3), &b.combined);
+            assert!(apart <= rounding_of(&run), "{name}: {apart}");
+        }
+    }
+}
+
+// Linear problems
+
+/// When motion and measurement are linear every rule of degree two has all moments right: each filter is the Kalman filter, up to
+/// the rounding of a run.
+#[test]
+fn with_linear_models_every_rule_is_the_kalman_filter_along_a_whole_run() {
+    let kalman = linear_scene().run();
+    for rule in RULES {
+        let run = linear_scene_with(rule).run();
+        let apart = distance_of_runs(&run, &kalman);
+        assert!(apart <= rounding_of(&kalman), "{rule}: {apart}");
+    }
+    // The rules with the weights that the papers print are another filter, or none.
+    for rule in ["cubature-5-printed", "simplex-5-printed-11", "simplex-5-printed-16"] {
+        match linear_scene_with(rule).try_run() {
+            Ok(run) => assert!(distance_of_runs(&run, &kalman) > 0.01, "{rule}"),
+            Err(failure) => assert!(failure.to_string().contains("not positive"), "{failure}"),
+        }
+    }
+}
+
+/// The moments about the origin are those about the mean in exact arithmetic. In doubles they cost the square of what the centred form
+/// costs: |x|²/σ² roundings instead of |x|/σ.
+#[test]
+fn the_raw_form_is_the_centred_form_up_to_its_greater_rounding() {
+    let kalman = linear_scene().run();
+    for rule in RULES {
+        let mut scene = linear_scene_with(rule);
+        scene.equations = Equations::raw_cubature();
+        let run = scene.run();
+        let apart = distance_of_runs(&run, &kalman);
+        let steps = run.len() as f64;
+        let digits_lost = rounding_of(&kalman) / (1000.0 * steps * ROUNDOFF);
+        assert!(
+            apart <= 1000.0 * steps * digits_lost * digits_lost * ROUNDOFF,
+            "{rule}: {apart}"
+        );
+    }
+}
+
+/// The raw form subtracts two numbers of size x² and leaves σ²: what it loses is x²/σ² roundings, no more and, at some entry of
+/// some step, not much less. The centred form loses x/σ at most.
+///
+/// Upper bound: a sum of L products, each rounded three times, of size Σ|w| (|x| + ξσ)², and two differences. Lower bound: of the
+/// thirty steps' sums at least one is off by an eighth of a rounding of x².
+#[test]
+fn the_raw_form_loses_the_digits_of_the_squared_position() {
+    for rule in ["cubature-3", "cubature-5", "simplex-5"] {
+        let mut losses = Vec::new();
+        for position in [1e3, 1e4, 1e5, 1e6] {
+            let deviation: f64 = 4.0;
+            let (mut raw_error, mut centred_error) = (0.0_f64, 0.0_f64);
+            for k in 0..30 {
+                let root = Matrix4::from_diagonal(&vector![deviation, 1.0, deviation, 1.0]);
+                let mean = vector![position + 7.3 * f64::from(k), -180.0, position / 3.0, 200.0];
+                let rule = common::rule_of(rule);
+                let points: Vec<_> = rule.points.iter().map(|xi| cubature::point(&root, xi, &mean)).collect();
+                let about = cubature::weighted_mean(&rule.weights, &points);
+                let noise = Matrix4::zeros();
+                let raw = raw::raw_covariance(&rule.weights, &points, &about, &noise);
+                let centred = cubature::weighted_covariance(&rule.weights, &points, &about, &noise);
+                let variance = deviation * deviation;
+                raw_error = raw_error.max((raw[(0, 0)] - variance).abs() / variance);
+                centred_error = centred_error.max((centred[(0, 0)] - variance).abs() / variance);
+            }
+            let ratio = position / deviation;
+            let terms = common::rule_of(rule).points.len() as f64 + 5.0;
+            let (lower, upper) = (0.125 * ROUNDOFF * ratio * ratio, 2.0 * terms * ROUNDOFF * ratio * ratio);
+            assert!(
+                lower <= raw_error && raw_error <= upper,
+                "{rule}: {raw_error} {lower} {upper}"
+            );
+            assert!(
+                centred_error <= 2.0 * terms * ROUNDOFF * ratio,
+                "{rule}: {centred_error}"
+            );
+            losses.push(raw_error);
+        }
+        // Ten times as far away is a hundred times as bad: six digits over three powers of ten, within a power of ten.
+        let growth = losses[3] / losses[0];
+        assert!((1e5..1e7).contains(&growth), "{rule}: {growth}");
+    }
+}
+
+/// Far enough away nothing is left: the raw form's covariance is not positive definite and the step fails, with the equation's number,
+/// where the centred form goes on.
+#[test]
+fn the_raw_form_fails_where_the_centred_form_goes_on() {
+    let far_away = |equations| {
+        let mut scene = linear_scene_with("cubature-5");
+        scene.equations = equations;
+        let offset = vector![3e11, 0.0, 3e11, 0.0];
+        for estimate in &mut scene.initial.modes {
+            estimate.mean += offset;
+        }
+        for z in scene.measurements.iter_mut().flatten() {
+            *z += vector![offset[0], offset[2]];
+        }
+        scene
+    };
+    assert!(far_away(Equations::cubature()).try_run().is_ok());
+    let failure = far_away(Equations::raw_cubature()).try_run().unwrap_err();
+    assert_eq!((failure.step, failure.equation), (1, "zhu2016 (27)"));
+}
+
+// Failures
+
+/// A step that fails leaves the filter where it was, and the next good measurement is filtered as if nothing had happened.
+#[test]
+fn a_failed_step_leaves_the_filter_at_the_step_before() {
+    for (name, scene) in all_scenes() {
+        let mut filter = scene.filter().unwrap();
+        for (z, undisturbed) in scene.measurements.iter().zip(scene.run()) {
+            let before = filter.current().clone();
+            // One failure before anything is computed, and one after all modes are updated.
+            for bad in [vector![f64::NAN, 0.0], vector![1e200, 1.0]] {
+                assert!(filter.step(Some(&bad)).is_err(), "{name}");
+                assert_eq!(filter.current().step, before.step);
+                assert_eq!(bits_of_step(filter.current()), bits_of_step(&before), "{name}");
+            }
+            let step = filter.step(z.as_ref()).unwrap();
+            assert_eq!(bits_of_step(step), bits_of_step(&undisturbed), "{name}");
+        }
+    }
+}
+
+/// A weight may be negative, and a weighted sum of squares then too. The unscented rule with κ = −5/2 has the weights −5/3 at its centre and
+/// 1/3 at √(3/2) deviations along each axis; the two points a velocity stand where the centre does. Over the sensor, at a
+/// deviation σ of each position, all ranges are 0 or r = √(3/2) σ, so ẑ = 4/3 r and S = −1/3 (4/3 r)² + 4/3 (1/3 r)² + R = −2/3 σ² + R:
+/// negative for σ = 1 km and R = (40 m)².
+///
+/// With κ = −3/2 the innovation covariance is positive, and it takes two updates until an estimate's own covariance is not.
+#[test]
+fn negative_weights_can_leave_no_covariance_and_the_failure_names_it() {
+    let over_the_sensor = |rule: Rule<f64, 4>| {
+        let mut scene = polar_scene_seen_from([0.0, 0.0], "unscented");
+        scene.problem.rule = Some(rule);
+        for estimate in &mut scene.initial.modes {
+            estimate.mean = vector![0.0, 10.0, 0.0, -5.0];
+            estimate.covariance = Matrix4::from_diagonal(&vector![1e6, 1e2, 1e6, 1e2]);
+        }
+        for (k, z) in scene.measurements.iter_mut().enumerate() {
+            let t = k as f64 + 1.0;
+            *z = Some(vector![(10.0 * t).hypot(5.0 * t), (-5.0_f64).atan2(10.0)]);
+        }
+        scene
+    };
+    let kappa = |numerator| {
+        let parameters = Parameters::of_kappa(Rational::new(numerator, 2));
+        Rule::from_exact(&unscented(4, &parameters).unwrap()).unwrap()
+    };
+    let failure = over_the_sensor(kappa(-5)).try_run().unwrap_err();
+    assert_eq!(
+        failure.to_string(),
+        "step 1, mode `constant velocity`, zhu2016 (51): the innovation covariance is not positive definite: pivot 1 of 2 is not \
+         positive"
+    );
+    let failure = over_the_sensor(kappa(-3)).try_run().unwrap_err();
+    assert_eq!(
+        failure.to_string(),
+        "step 3, mode `constant velocity`, zhu2016 (1): the mixed covariance is not positive definite: pivot 3 of 4 is not positive"
+    );
+    // Rules whose weights at the positions are positive go through; κ = 3 − n is among them, with its −1/3 at the centre.
+    for rule in RULES {
+        assert!(over_the_sensor(common::rule_of(rule)).try_run().is_ok(), "{rule}");
+    }
+}
+
+// Helpers
+
+/// x̂ → D x̂: y and ẏ change their signs.
+#[allow(non_snake_case, reason = "a constant, but for nalgebra")]
+fn MIRROR() -> Matrix4<f64> {
+    Matrix4::from_diagonal(&vector![1.0, 1.0, -1.0, -1.0])
+}
+
+/// The estimate in the mirror.
+fn mirror_image(estimate: &Gaussian<f64, 4>) -> Gaussian<f64, 4> {
+    Gaussian {
+        mean: MIRROR() * estimate.mean,
+        covariance: MIRROR() * estimate.covariance * MIRROR(),
+    }
+}
+
+/// The scene in the mirror, with the turns exchanged; the rule is as it was.
+fn mirrored(scene: &Scene) -> Scene {
+    let mut image = scene.clone();
+    image.problem.modes[1] = mode("right turn", coordinated_turn(&-TURN_RATE, &1.0));
+    image.problem.modes[2] = mode("left turn", coordinated_turn(&TURN_RATE, &1.0));
+    for estimate in &mut image.initial.modes {
+        *estimate = mirror_image(estimate);
+    }
+    // The second component is y or the bearing; noises are diagonal.
+    for z in image.measurements.iter_mut().flatten() {
+        z[1] = -z[1];
+    }
+    image
+}
+
+/// The steps of a run whose scene was turned by half a turn, turned back.
+fn turned_back(run: &[Step<f64, 4, 2>]) -> Vec<Step<f64, 4, 2>> {
+    let mut run = run.to_vec();
+    for step in &mut run {
+        let modes = step
+            .mixed
+            .iter_mut()
+            .chain(&mut step.predicted)
+            .chain(&mut step.updated);
+        for estimate in modes.chain([&mut step.combined_prediction, &mut step.combined]) {
+            estimate.mean = -estimate.mean;
+        }
+    }
+    run
+}
+
+/// The scene in units of length that are `1/scale` metres.
+fn in_units(scene: &Scene, scale: f64) -> Scene {
+    let mut other = scene.clone();
+    let lengths: [f64; 2] = match &mut other.problem.measurement {
+        Measurement::Linear(_) => [scale, scale],
+        Measurement::Polar { sensor, .. } => {
+            *sensor = sensor.map(|coordinate| coordinate * scale);
+            [scale, 1.0]
+        }
+    };
+    let lengths = Vector2::from(lengths);
+    for mode in &mut other.problem.modes {
+        mode.noise *= scale * scale;
+    }
+    other
+        .problem
+        .measurement_noise
+        .component_mul_assign(&(lengths * lengths.transpose()));
+    for estimate in &mut other.initial.modes {
+        *estimate = scaled(estimate, scale);
+    }
+    for z in other.measurements.iter_mut().flatten() {
+        z.component_mul_assign(&lengths);
+    }
+    other
+}
+
+/// The estimate in units of length that are `1/scale` of its own.
+fn scaled(estimate: &Gaussian<f64, 4>, scale: f64) -> Gaussian<f64, 4> {
+    Gaussian {
+        mean: estimate.mean * scale,
+        covariance: estimate.covariance * (scale * scale),
+    }
+}
+
+/// The scene with these of its modes, in this order; the chain too, if all of them are there, else one that stays.
+fn with_modes(scene: &Scene, order: &[usize]) -> Scene {
+    let mut other = scene.clone();
+    let pick = |j: &usize| scene.problem.modes[*j].clone();
+    other.problem.modes = order.iter().map(pick).collect();
+    other.initial.modes = order.iter().map(|&j| scene.initial.modes[j].clone()).collect();
+    other.initial.mode_probabilities = vec![1.0];
+    other.problem.transition = identity_chain(1);
+    if order.len() == scene.problem.modes.len() {
+        let chain = &scene.problem.transition;
+        let row = |&i: &usize| order.iter().map(|&j| chain[i][j]).collect();
+        other.problem.transition = order.iter().map(row).collect();
+        let probabilities = &scene.initial.mode_probabilities;
+        other.initial.mode_probabilities = order.iter().map(|&j| probabilities[j]).collect();
+    }
+    other
+}
+
+/// The scene with the left turn in the place of every mode, under the same names of places, and one start for all.
+fn with_identical_modes(scene: &Scene) -> Scene {
+    let mut other = scene.clone();
+    for j in 0..3 {
+        other.problem.modes[j] = scene.problem.modes[1].clone();
+        other.initial.modes[j] = scene.initial.modes[1].clone();
+    }
+    other
+}
+
+/// The chain that never moves.
+fn identity_chain(modes: usize) -> Vec<Vec<f64>> {
+    let row = |i: usize| (0..modes).map(|j| f64::from(i == j)).collect();
+    (0..modes).map(row).collect()
+}
+
+/// The probabilities one step later along the chain: πⱼ = Σᵢ πᵢ pᵢⱼ.
+fn along_the_chain(chain: &[Vec<f64>], probabilities: &[f64]) -> Vec<f64> {
+    let mut next = vec![0.0; probabilities.len()];
+    for (row, probability) in chain.iter().zip(probabilities) {
+        for (entry, transition) in next.iter_mut().zip(row) {
+            *entry += probability * transition;
+        }
+    }
+    next
+}
+
+/// The transposed matrix.
+fn transposed(chain: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    (0..chain.len())
+        .map(|j| chain.iter().map(|row| row[j]).collect())
+        .collect()
+}
+
+/// All bits of a step.
+fn bits_of_step(step: &Step<f64, 4, 2>) -> Vec<u64> {
+    let mut all = bits(&step.mode_probabilities);
+    all.extend(bits(&step.predicted_mode_probabilities));
+    all.extend(bits([&step.log_evidence]));
+    all.extend(bits_of(&step.combined_prediction));
+    all.extend(bits_of(&step.combined));
+    for j in 0..step.updated.len() {
+        all.extend(bits_of_mode(step, j));
+        all.extend(bits(&step.mixing_probabilities[j]));
+    }
+    all
+}
+
+/// The updated estimates of mode j's filter by itself: no mixing, no probabilities, written out from the filter's equations.
+fn plain_run(scene: &Scene, j: usize) -> Vec<Gaussian<f64, 4>> {
+    let problem = &scene.problem;
+    let mode = &problem.modes[j];
+    let mut estimate = scene.initial.modes[j].clone();
+    let mut run = Vec::new();
+    for z in &scene.measurements {
+        let Gaussian { mean, covariance } = &estimate;
+        let predicted = match &problem.rule {
+            None => Gaussian {
+                mean: kalman::predicted_mean(&mode.transition, mean),
+                covariance: kalman::predicted_covariance(&mode.transition, covariance, &mode.noise),
+            },
+            Some(rule) => {
+                let moved: Vec<_> = points_of(rule, &estimate)
+                    .iter()
+                    .map(|point| cubature::propagated_point(&mode.transition, point))
+                    .collect();
+                let mean = cubature::weighted_mean(&rule.weights, &moved);
+                let weights = &rule.covariance_weights;
+                Gaussian {
+                    mean,
+                    covariance: cubature::weighted_covariance(weights, &moved, &mean, &mode.noise),
+                }
+            }
+        };
+        estimate = match z {
+            None => predicted,
+            Some(z) => plain_update(scene, &predicted, z),
+        };
+        run.push(estimate.clone());
+    }
+    run
+}
+
+/// One filter's update.
+fn plain_update(scene: &Scene, predicted: &Gaussian<f64, 4>, z: &Vector2<f64>) -> Gaussian<f64, 4> {
+    let measurement = &scene.problem.measurement;
+    let noise = &scene.problem.measurement_noise;
+    let (expected, innovation_covariance, cross_covariance) = match &scene.problem.rule {
+        None => {
+            let h = measurement.matrix();
+            (
+                h * predicted.mean,
+                kalman::innovation_covariance(&h, &predicted.covariance, noise),
+                kalman::cross_covariance(&predicted.covariance, &h),
+            )
+        }
+        Some(rule) => {
+            let points = points_of(rule, predicted);
+            let values: Vec<_> = points.iter().map(|point| measurement.of(point)).collect();
+            let centre = measurement.of(&predicted.mean);
+            let expected = measurement.mean(&rule.weights, &values, &centre);
+            let weights = &rule.covariance_weights;
+            let s = cubature::innovation_covariance(measurement, weights, &values, &expected, noise);
+            let mean = &predicted.mean;
+            let c = cubature::cross_covariance(measurement, weights, &points, mean, &values, &expected);
+            (expected, s, c)
+        }
+    };
+    let innovation = measurement.difference(z, &expected);
+    let gain = update::gain(&cross_covariance, &ldl(&innovation_covariance));
+    Gaussian {
+        mean: update::updated_mean(&predicted.mean, &gain, &innovation),
+        covariance: update::updated_covariance(&predicted.covariance, &gain, &innovation_covariance),
+    }
+}
+
+/// The rule's points for an estimate.
+fn points_of(rule: &Rule<f64, 4>, estimate: &Gaussian<f64, 4>) -> Vec<SVector<f64, 4>> {
+    let root = cholesky(&estimate.covariance).expect("a covariance");
+    let at = |xi| cubature::point(&root, xi, &estimate.mean);
+    rule.points.iter().map(at).collect()
+}
