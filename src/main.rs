@@ -186,9 +186,11 @@ fn reproduce(arguments: &Reproduce) -> Result<String, Refusal> {
     let chosen = Choices::parse(&arguments.choices).map_err(Refusal::request)?;
     let effort = effort(arguments.runs, arguments.seed);
     let mut plan = Vec::new();
+    check_that_some_paper_has(&papers, &chosen)?;
     for paper in &papers {
+        let chosen = paper.specification().choices_of_this_paper(&chosen);
         let scenario = paper.scenario(&chosen).map_err(Refusal::request)?;
-        let mut choices = vec![chosen.clone()];
+        let mut choices = vec![chosen];
         if !arguments.brief && arguments.choices.is_empty() {
             choices.extend(paper.specification().single_alternatives());
         }
@@ -234,6 +236,30 @@ fn reproduce(arguments: &Reproduce) -> Result<String, Refusal> {
     }
     text.push_str("What these figures say of the papers' claims: immaculate claims\n");
     Ok(text)
+}
+
+/// A parameter that none of the papers has is a mistake; one that some have is set for these.
+fn check_that_some_paper_has(papers: &[Paper], choices: &Choices) -> Result<(), Refusal> {
+    for parameter in choices.parameters() {
+        let has = |paper: &Paper| paper.specification().parameters.iter().any(|p| p.name == parameter);
+        if !papers.iter().any(has) {
+            let of_paper = |paper: &Paper| {
+                let names: Vec<&str> = paper
+                    .specification()
+                    .parameters
+                    .iter()
+                    .map(|p| p.name.as_str())
+                    .collect();
+                format!("{} has {}", paper.key(), names.join(", "))
+            };
+            let known: Vec<String> = papers.iter().map(of_paper).collect();
+            return Err(Refusal::request(format!(
+                "there is no parameter `{parameter}`; {}",
+                known.join("; ")
+            )));
+        }
+    }
+    Ok(())
 }
 
 /// The files of `reproduce --out`: everything as JSON, errors over time and mode probabilities as CSV.

@@ -223,14 +223,21 @@ pub fn is_symmetric<T: Field, const N: usize>(matrix: &SMatrix<T, N, N>) -> bool
 /// nothing but zeros.
 ///
 /// Noise covariances of low rank are legitimate (zhu2016's has rank two), and elimination in rounded arithmetic leaves a
-/// rest of their zero pivots of the order of N roundings of the diagonal: a pivot counts as zero below N · 2⁻⁵⁰ of its
-/// diagonal entry, and an entry below it when the same holds against the geometric mean of its two diagonal entries.
+/// rest of their zero pivots: of the order of N roundings of the diagonal, if the greatest pivot always goes first. A pivot counts
+/// as zero below N · 2⁻⁵⁰ of its diagonal entry, and an entry below it when its square does against the product of its two
+/// diagonal entries (it is no greater in a semidefinite matrix, by Cauchy's inequality).
 ///
-/// Source: Golub and Van Loan, Matrix Computations, 4th edition, section 4.2, positive semidefinite matrices; without pivoting.
+/// Source: Golub and Van Loan, Matrix Computations, 4th edition, section 4.2, positive semidefinite matrices; the pivots are
+/// compared as parts of their diagonal entries, so that units do not matter.
+///
+/// Evidence: `a_matrix_is_positive_semidefinite_exactly_when_no_pivot_is_negative`,
+/// `a_covariance_of_low_rank_is_positive_semidefinite_as_rounded` (property).
 pub fn is_positive_semidefinite<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> bool {
     let rounding = T::integer(i64::try_from(N).unwrap_or(i64::MAX)) / T::integer(1 << 50);
     let mut rest = matrix.clone();
-    for j in 0..N {
+    let mut rows: Vec<usize> = (0..N).collect();
+    while !rows.is_empty() {
+        let j = take_greatest_pivot(&mut rows, matrix, &rest);
         let noise = rounding.clone() * matrix[(j, j)].clone();
         let pivot = rest[(j, j)].clone();
         let is_negligible = pivot <= noise;
@@ -238,25 +245,43 @@ pub fn is_positive_semidefinite<T: Real, const N: usize>(matrix: &SMatrix<T, N, 
             return false;
         }
         if is_negligible {
-            let vanishes = |i: usize| {
+            let vanishes = |&i: &usize| {
                 let square = rest[(i, j)].clone() * rest[(i, j)].clone();
                 let bound = matrix[(i, i)].clone() * matrix[(j, j)].clone();
                 square <= bound * rounding.clone()
             };
-            if !(j + 1..N).all(vanishes) {
+            if !rows.iter().all(vanishes) {
                 return false;
             }
             continue;
         }
-        for i in j + 1..N {
+        for &i in &rows {
             let factor = rest[(i, j)].clone() / pivot.clone();
-            for k in j + 1..N {
+            for &k in &rows {
                 let eliminated = factor.clone() * rest[(j, k)].clone();
                 rest[(i, k)] -= eliminated;
             }
         }
     }
     true
+}
+
+/// Takes out the row whose pivot is the greatest part of its diagonal entry.
+fn take_greatest_pivot<T: Real, const N: usize>(
+    rows: &mut Vec<usize>,
+    matrix: &SMatrix<T, N, N>,
+    rest: &SMatrix<T, N, N>,
+) -> usize {
+    let mut best = 0;
+    for place in 1..rows.len() {
+        let (i, j) = (rows[place], rows[best]);
+        // restᵢᵢ/Pᵢᵢ > restⱼⱼ/Pⱼⱼ, without a division by a variance of zero.
+        let is_greater = rest[(i, i)].clone() * matrix[(j, j)].clone() > rest[(j, j)].clone() * matrix[(i, i)].clone();
+        if is_greater {
+            best = place;
+        }
+    }
+    rows.remove(best)
 }
 
 /// An entry is finite when it minus itself is zero: an infinity, a value that is not a number and an undecided value are not.

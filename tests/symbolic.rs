@@ -771,7 +771,7 @@ fn gegenbauer_coefficients(n: &Unknown, k: usize) -> Vec<Unknown> {
 /// The mean of t^(2j) over the sphere, t one coordinate: 1·3 ⋯ (2j − 1) / (n(n + 2) ⋯ (n + 2j − 2)).
 fn mean_of_power_on_sphere(n: &Unknown, j: usize) -> Unknown {
     let odd = (1..2 * j).step_by(2);
-    let above = odd.fold(1, |product, factor| product * factor);
+    let above = odd.product::<usize>();
     number(i64::try_from(above).unwrap()) / radial_moment(n, j)
 }
 

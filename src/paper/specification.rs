@@ -277,6 +277,13 @@ impl Specification {
         Ok(())
     }
 
+    /// The choices of parameters that this paper has.
+    pub fn choices_of_this_paper(&self, choices: &Choices) -> Choices {
+        let known = |parameter: &str| self.parameters.iter().any(|p| p.name == parameter);
+        let kept = choices.0.iter().filter(|(parameter, _)| known(parameter));
+        Choices(kept.map(|(p, a)| (p.clone(), a.clone())).collect())
+    }
+
     /// All choices of one alternative that is not a default, in the order of the file.
     pub fn single_alternatives(&self) -> Vec<Choices> {
         let mut all = Vec::new();

@@ -1,6 +1,6 @@
 //! The ledger of claims for people.
 
-use super::WIDTH;
+use super::wrapped;
 use crate::paper::specification::Specification;
 use crate::paper::verdict::{Judgement, Verdict};
 use std::fmt::Write;
@@ -17,7 +17,7 @@ pub fn text(judgements: &[Judgement]) -> String {
         );
         let quote = format!("“{}” ({})", judgement.quote, judgement.place);
         for paragraph in [&quote, &judgement.question, &judgement.evidence] {
-            text.push_str(&wrapped(paragraph));
+            text.push_str(&wrapped(paragraph, "    "));
         }
         text.push('\n');
     }
@@ -40,26 +40,6 @@ pub fn summary(judgements: &[Judgement]) -> String {
         .map(|(verdict, count)| format!("{count} {}", verdict.words()))
         .collect();
     format!("{} claims: {}\n\n", judgements.len(), counts.join(", "))
-}
-
-/// A paragraph broken at words and indented.
-fn wrapped(paragraph: &str) -> String {
-    const INDENT: &str = "    ";
-    let width = usize::from(WIDTH);
-    let mut text = String::new();
-    let mut line = INDENT.to_owned();
-    for word in paragraph.split_whitespace() {
-        if line.chars().count() + 1 + word.chars().count() > width && line != INDENT {
-            let _ = writeln!(text, "{line}");
-            INDENT.clone_into(&mut line);
-        }
-        if line != INDENT {
-            line.push(' ');
-        }
-        line.push_str(word);
-    }
-    let _ = writeln!(text, "{line}");
-    text
 }
 
 /// The paper whose claims follow.

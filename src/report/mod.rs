@@ -43,3 +43,24 @@ pub fn standard_errors(value: f64) -> String {
         format!("{value:+.0}")
     }
 }
+
+/// A paragraph broken at words, every line indented.
+fn wrapped(paragraph: &str, indent: &str) -> String {
+    let width = usize::from(WIDTH);
+    let mut text = String::new();
+    let mut line = indent.to_owned();
+    for word in paragraph.split_whitespace() {
+        if line.chars().count() + 1 + word.chars().count() > width && line != indent {
+            text.push_str(&line);
+            text.push('\n');
+            indent.clone_into(&mut line);
+        }
+        if line != indent {
+            line.push(' ');
+        }
+        line.push_str(word);
+    }
+    text.push_str(&line);
+    text.push('\n');
+    text
+}

@@ -1,6 +1,6 @@
 //! A reproduction for people: published and computed side by side.
 
-use super::{standard_errors, table};
+use super::{standard_errors, table, wrapped};
 use crate::paper::result::{ErrorFigure, Performance, Quantity, Reproduction};
 use crate::paper::specification::{Choices, Specification, Table};
 use crate::paper::{Paper, liu2017, zhu2016};
@@ -301,18 +301,16 @@ pub fn alternatives(paper: Paper, reproductions: &[Reproduction]) -> String {
 pub fn choices(specification: &Specification) -> String {
     let mut text = format!("{}  {}\n", specification.paper.key, specification.paper.title);
     for parameter in &specification.parameters {
-        let _ = writeln!(
-            text,
-            "\n  {}   (the paper prints: {})",
-            parameter.name, parameter.printed
-        );
+        let _ = writeln!(text, "\n{}", parameter.name);
+        text.push_str(&wrapped(&format!("The paper prints: {}", parameter.printed), "    "));
         for alternative in &parameter.alternatives {
             let mark = if alternative.name == parameter.default {
                 "*"
             } else {
                 " "
             };
-            let _ = writeln!(text, "   {mark} {:<34} {}", alternative.name, alternative.meaning);
+            let _ = writeln!(text, "  {mark} {}={}", parameter.name, alternative.name);
+            text.push_str(&wrapped(&alternative.meaning, "        "));
         }
     }
     text.push_str("\n  * the default. Choose with: immaculate reproduce --set PARAMETER=ALTERNATIVE\n\n");

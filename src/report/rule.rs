@@ -1,8 +1,8 @@
 //! A cubature rule for people: points and weights, exact and decimal, with the degree that its exact moments prove.
 
 use super::table;
-use crate::number::{Field, Rational, Surd};
-use crate::rule::moment::{Exactness, exactness, monomial_name};
+use crate::number::{Field, Surd};
+use crate::rule::moment::{Exactness, exactness, gaussian_moment, monomial_name};
 use crate::rule::{ExactRule, InvalidRule, RuleName, gauss_hermite};
 use serde::Serialize;
 use std::fmt::Write;
@@ -129,10 +129,10 @@ fn describe_gauss_hermite(m: usize, shown: &str, n: usize) -> Result<Description
     }
     let count = u32::try_from(n).ok().and_then(|n| m.checked_pow(n));
     let points = count.unwrap_or(usize::MAX);
-    let failing = 2 * m;
-    let gaussian = (1..failing).step_by(2).fold(Rational::new(1, 1), |product, factor| {
-        product * Rational::integer(i64::try_from(factor).unwrap_or(i64::MAX))
-    });
+    // Odd moments vanish on both sides; a product rule has the degree of its one coordinate.
+    let gaussian = |power: usize| gaussian_moment(&[power]);
+    let wrong = |power: &usize| gauss_hermite::moment(&nodes, *power) != Surd::rational(&gaussian(*power));
+    let failing = (0..=2 * m).find(wrong).unwrap_or(2 * m + 1);
     let list = nodes
         .iter()
         .map(|node| {
@@ -156,13 +156,14 @@ fn describe_gauss_hermite(m: usize, shown: &str, n: usize) -> Result<Description
         points,
         distinct_points: points,
         effective_points: points,
-        sum_of_weights: "1".to_owned(),
-        sum_of_absolute_weights: "1".to_owned(),
-        proven_degree: Some(failing - 1),
+        // The weights of a product are products of weights, and all are positive.
+        sum_of_weights: gauss_hermite::moment(&nodes, 0).to_string(),
+        sum_of_absolute_weights: gauss_hermite::moment(&nodes, 0).to_string(),
+        proven_degree: failing.checked_sub(1),
         first_wrong_moment: Some(WrongMoment {
             moment: format!("E x1^{failing}"),
             rule: gauss_hermite::moment(&nodes, failing).to_string(),
-            gaussian: gaussian.to_string(),
+            gaussian: gaussian(failing).to_string(),
         }),
         list,
     })
