@@ -14,6 +14,7 @@ use immaculate::model::angle::wrap;
 use immaculate::model::motion::{Mode, coordinated_turn};
 use immaculate::model::{Measurement, PolarComponent};
 use immaculate::number::Rational;
+use immaculate::report::rule::describe;
 use immaculate::rule::gauss_hermite::gauss_hermite;
 use immaculate::rule::unscented::{Parameters, unscented};
 use immaculate::rule::{InvalidRule, Rule, RuleName};
@@ -202,9 +203,26 @@ fn covariances_are_symmetric_to_the_last_bit() {
 /// Both eigenvalue signs, and a matrix whose diagonal hides that it is indefinite.
 #[test]
 fn covariances_are_positive_definite_and_process_noises_semidefinite() {
-    let spoils: [(Spoil, &str); 5] = [
+    let spoils: [(Spoil, &str); 7] = [
         (
             |scene| scene.problem.modes[1].noise[(2, 2)] = -1.0,
+            "`modes[left turn].Q` is not positive semidefinite (liu2017 (17))",
+        ),
+        (
+            // A negative variance and nothing else.
+            |scene| {
+                scene.problem.modes[1].noise.fill(0.0);
+                scene.problem.modes[1].noise[(2, 2)] = -1.0;
+            },
+            "`modes[left turn].Q` is not positive semidefinite (liu2017 (17))",
+        ),
+        (
+            // A covariance without variances.
+            |scene| {
+                scene.problem.modes[1].noise.fill(0.0);
+                scene.problem.modes[1].noise[(0, 2)] = 1.0;
+                scene.problem.modes[1].noise[(2, 0)] = 1.0;
+            },
             "`modes[left turn].Q` is not positive semidefinite (liu2017 (17))",
         ),
         (
@@ -375,7 +393,19 @@ fn unscented_points_are_at_a_real_distance() {
 }
 
 #[test]
-fn a_gauss_hermite_rule_has_two_to_five_nodes_and_no_exact_product_form() {
+fn unscented_points_are_at_a_distance_that_has_an_exact_form() {
+    let of_kappa = |kappa: &str| unscented(4, &Parameters::of_kappa(Rational::from_decimal(kappa).unwrap()));
+    let sentence = of_kappa("0.12345678901234567891").unwrap_err().to_string();
+    assert_eq!(
+        sentence,
+        "the unscented parameters give n + lambda = 412345678901234567891/100000000000000000000, whose root has too many digits to be \
+         exact; give fewer decimals"
+    );
+    assert!(of_kappa("0.12345").is_ok());
+}
+
+#[test]
+fn gauss_hermite_rules_have_two_to_five_nodes() {
     for nodes in [0, 1, 6, usize::MAX] {
         let sentence = format!("the Gauss-Hermite rule has 2 to 5 nodes a coordinate here, not {nodes}");
         assert_eq!(gauss_hermite::<f64, 2>(nodes).unwrap_err().to_string(), sentence);
@@ -396,6 +426,35 @@ fn a_rule_serves_states_of_its_own_dimension() {
         "a rule of dimension 3 cannot serve a state of dimension 4"
     );
     assert!(Rule::<f64, 3>::from_exact(&exact).is_ok());
+}
+
+#[test]
+fn a_rule_is_listed_up_to_a_greatest_dimension() {
+    let sentence = describe(&RuleName::Simplex, "simplex-5", 1_000_000)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        sentence.starts_with("dimension 1000000 is too large to be listed; at most "),
+        "{sentence}"
+    );
+    assert!(describe(&RuleName::Simplex, "simplex-5", 3).is_ok());
+}
+
+// Coverage
+
+/// Every variant of the library's errors has a test here: a new one does not compile until it has a line in one of the lists at the
+/// end of this file, and a line must name a test that is here.
+#[test]
+fn every_error_has_a_test_in_this_file() {
+    let source = include_str!("bad_input.rs");
+    let quoted = source.split("=> \"").skip(1);
+    let names: Vec<&str> = quoted.filter_map(|rest| rest.split('"').next()).collect();
+    for name in &names {
+        assert!(source.contains(&format!("#[test]\nfn {name}()")), "{name}");
+    }
+    assert!(names.contains(&problem_test(&InvalidProblem::NoModes)));
+    assert!(names.contains(&rule_test(&InvalidRule::NestedRoots)));
+    assert!(names.contains(&cause_test(&Cause::NoEvidence)));
 }
 
 // Steps
@@ -447,7 +506,7 @@ fn a_measurement_that_no_mode_can_explain_is_refused() {
 
 #[test]
 fn a_covariance_that_stops_being_positive_definite_is_named() {
-    // Exactly zero predicted and mixed covariances cannot be had from a problem that is checked; tables of equations can give them.
+    // A problem that is checked starts from covariances; an exchanged equation can give something else.
     let mut scene = linear_scene_with("cubature-5");
     scene.equations.mixed_covariance = |_, _, _, j| indefinite_if(j == 1);
     assert_failure(
@@ -656,8 +715,8 @@ struct Fates {
     ran: usize,
 }
 
-/// Nothing panics; an error has a sentence that names a field or a step and an equation; and a run of measured steps has finite
-/// mode probabilities that are probabilities.
+/// Nothing panics; an error has a sentence that names a field or a step and an equation; and a step with a measurement has mode
+/// probabilities between zero and one.
 #[test]
 fn garbage_never_panics_and_either_errs_or_runs() {
     let mut fates = Fates::default();
@@ -673,47 +732,46 @@ fn garbage_never_panics_and_either_errs_or_runs() {
         any::<bool>(),
     );
     proptest!(config, |(((problem, initial), measurements, raw) in garbage)| {
-        let mut fates = fates_seen.borrow_mut();
-        let equations = match (&problem.rule, raw) {
-            (None, _) => Equations::kalman(),
-            (Some(_), false) => Equations::cubature(),
-            (Some(_), true) => Equations::raw_cubature(),
-        };
-        let mut filter = match Imm::new(problem, equations, &initial) {
-            Ok(filter) => filter,
-            Err(error) => {
-                fates.refused += 1;
-                let sentence = error.to_string();
-                prop_assert!(sentence.starts_with('`'), "{}", sentence);
-                prop_assert!(sentence.contains("2016 (") || sentence.contains("2017 ("), "{}", sentence);
-                return Ok(());
-            }
-        };
-        let mut failed = false;
-        for (x, y) in measurements {
-            let before = filter.current().step;
-            match filter.step(Some(&vector![x, y])) {
-                Ok(step) => {
-                    for probability in &step.mode_probabilities {
-                        // A rounding of the logarithms above one is a rounding of a number below 10³⁰⁸, so it can be large; what is
-                        // sure is that no probability is negative or without a value.
-                        prop_assert!(*probability >= 0.0 && probability.is_finite());
+            let mut fates = fates_seen.borrow_mut();
+            let equations = match (&problem.rule, raw) {
+                (None, _) => Equations::kalman(),
+                (Some(_), false) => Equations::cubature(),
+                (Some(_), true) => Equations::raw_cubature(),
+            };
+            let mut filter = match Imm::new(problem, equations, &initial) {
+                Ok(filter) => filter,
+                Err(error) => {
+                    fates.refused += 1;
+                    let sentence = error.to_string();
+                    prop_assert!(sentence.starts_with('`'), "{}", sentence);
+                    prop_assert!(sentence.contains("2016 (") || sentence.contains("2017 ("), "{}", sentence);
+                    return Ok(());
+                }
+            };
+            let mut failed = false;
+            for (x, y) in measurements {
+                let before = filter.current().step;
+                match filter.step(Some(&vector![x, y])) {
+                    Ok(step) => {
+                        for probability in &step.mode_probabilities {
+    // However coarse the logarithms are, the greatest term is not above the sum.
+                            prop_assert!((0.0..=1.0).contains(probability));
+                        }
+                    }
+                    Err(failure) => {
+                        failed = true;
+                        prop_assert!(failure.to_string().starts_with("step "), "{}", failure);
+                        prop_assert_eq!(filter.current().step, before);
                     }
                 }
-                Err(failure) => {
-                    failed = true;
-                    prop_assert!(failure.to_string().starts_with("step "), "{}", failure);
-                    prop_assert_eq!(filter.current().step, before);
-                }
+                let _ = filter.step(None);
             }
-            let _ = filter.step(None);
-        }
-        if failed {
-            fates.failed += 1;
-        } else {
-            fates.ran += 1;
-        }
-    });
+            if failed {
+                fates.failed += 1;
+            } else {
+                fates.ran += 1;
+            }
+        });
     // The garbage is worth its name, and not all of it is refused at the door.
     assert!(fates.refused > 1000, "{fates:?}");
     assert!(fates.failed > 50, "{fates:?}");
@@ -779,4 +837,46 @@ fn polar(position: [usize; 2], sensor: [f64; 2]) -> Measurement<f64, 4, 2> {
 fn indefinite_if(indefinite: bool) -> Matrix4<f64> {
     let third = if indefinite { -1.0 } else { 1.0 };
     Matrix4::from_diagonal(&vector![1.0, 1.0, third, 1.0])
+}
+
+// Lists of tests
+
+/// The test of a variant.
+fn problem_test(error: &InvalidProblem) -> &'static str {
+    match error {
+        InvalidProblem::Length { .. } => "every_list_has_as_many_entries_as_there_are_modes",
+        InvalidProblem::NoModes => "there_is_at_least_one_mode",
+        InvalidProblem::NotFinite { .. } => "every_number_is_finite",
+        InvalidProblem::NegativeProbability { .. } => "probabilities_are_not_negative",
+        InvalidProblem::NotNormalised { .. } => "rows_of_the_transition_matrix_and_initial_probabilities_sum_to_one",
+        InvalidProblem::NotSymmetric { .. } => "covariances_are_symmetric_to_the_last_bit",
+        InvalidProblem::NotPositive { .. } => "covariances_are_positive_definite_and_process_noises_semidefinite",
+        InvalidProblem::NotLinear => "the_kalman_filter_has_linear_measurements_only",
+        InvalidProblem::Rule { .. } => "a_rule_is_given_exactly_to_the_filters_that_draw_points",
+        InvalidProblem::RuleLengths { .. } => "a_rule_has_one_weight_a_point",
+        InvalidProblem::Position { .. } => "the_measured_position_is_in_the_state",
+    }
+}
+
+/// The test of a variant.
+fn rule_test(error: &InvalidRule) -> &'static str {
+    match error {
+        InvalidRule::UnknownName { .. } => "a_rule_that_does_not_exist_is_refused_with_the_names_of_those_that_do",
+        InvalidRule::Dimension { .. } => "a_rule_has_a_least_dimension",
+        InvalidRule::TooLarge { .. } => "a_rule_is_listed_up_to_a_greatest_dimension",
+        InvalidRule::Radius { .. } => "unscented_points_are_at_a_real_distance",
+        InvalidRule::RadiusDigits { .. } => "unscented_points_are_at_a_distance_that_has_an_exact_form",
+        InvalidRule::Nodes { .. } | InvalidRule::NestedRoots => "gauss_hermite_rules_have_two_to_five_nodes",
+        InvalidRule::StateDimension { .. } => "a_rule_serves_states_of_its_own_dimension",
+    }
+}
+
+/// The test of a variant.
+fn cause_test(cause: &Cause) -> &'static str {
+    match cause {
+        Cause::NotPositiveDefinite { .. } => "a_covariance_that_stops_being_positive_definite_is_named",
+        Cause::MeasurementNotFinite => "a_measurement_is_finite",
+        Cause::BearingOutOfRange { .. } => "a_bearing_in_degrees_is_refused",
+        Cause::NoEvidence => "a_measurement_that_no_mode_can_explain_is_refused",
+    }
 }

@@ -7,9 +7,13 @@
 // Doubles are compared exactly: either every operation on them is exact, or they must be the nearest ones.
 #![allow(clippy::float_cmp)]
 
+use immaculate::filter::{cubature, kalman};
+use immaculate::gaussian::{Gaussian, mixture_covariance, mixture_mean};
+use immaculate::imm::diagonal_mixing;
 use immaculate::matrix::{
     NotPositiveDefinite, check_positive_definite, cholesky, is_positive_semidefinite, ldl, quadratic_form, solve,
 };
+use immaculate::model::Measurement;
 use immaculate::model::motion::{acceleration_noise, constant_velocity, coordinated_turn, integrated_noise};
 use immaculate::number::{Field, Rational, RationalFunction, Surd};
 use immaculate::rule::fifth_degree::{self, fifth_degree};
@@ -19,7 +23,7 @@ use immaculate::rule::simplex::{self, edge_midpoints, simplex, vertices};
 use immaculate::rule::sphere::{SphericalRule, on_axes, on_axes_and_diagonals, on_simplex, radial_moment};
 use immaculate::rule::third_degree::{self, third_degree};
 use immaculate::rule::unscented::{self, Parameters, unscented};
-use immaculate::rule::{ExactRule, Rule, printed};
+use immaculate::rule::{ExactRule, InvalidRule, Rule, RuleName, printed};
 use nalgebra::{SMatrix, SVector, matrix, vector};
 use num_traits::{One, Zero};
 use std::collections::BTreeMap;
@@ -498,8 +502,10 @@ fn printed_fifth_degree_weight_breaks_the_zeroth_moment() {
         assert_eq!(corrected.sum_of_weights(), whole(1));
         assert_eq!(exactness(&corrected, 2).degree, Some(2));
     }
-    let at_four = printed::fifth_degree(4).unwrap();
-    assert_eq!(at_four.sum_of_weights(), Rational::new(5, 3));
+    for (n, numerator, denominator) in [(2, 5, 4), (3, 37, 25), (4, 5, 3)] {
+        let sum = printed::fifth_degree(n).unwrap().sum_of_weights();
+        assert_eq!(sum, Rational::new(numerator, denominator));
+    }
     // In one dimension there are no diagonals, and the printed weight has nothing to break.
     assert_eq!(printed::fifth_degree(1), fifth_degree(1));
 }
@@ -637,10 +643,11 @@ fn printed_surface_area_is_two_in_every_dimension() {
 
 // The counting behind the proofs for every n
 
-/// The numbers of pairs in `rule::sphere` are polynomials in n of degree four at most, and the squared inner products
-/// quotients of such, so that five dimensions in which they are right prove them for all. Where two kinds of pairs have the same
-/// squared product and the same weights (zero weights at n = 4 and n = 7, midpoints at n = 3 and n = 7, the axes and diagonals at
-/// n = 2), their sum is checked; these dimensions are not among the five.
+/// The numbers of pairs are polynomials in n of degree four at most (two points, each with two indices), and the squared inner
+/// products quotients of polynomials of degree two at most: formulas that are right in five dimensions are right in all.
+///
+/// In some dimensions two kinds of pairs have the same squared product and the same weights, and only their sum is seen: on the axes
+/// and diagonals at n = 2 and n = 4, on the simplex at n = 3 and n = 7. That leaves six dimensions to each.
 #[test]
 fn inner_products_are_counted_as_the_points_have_them() {
     for n in 1..=9 {
@@ -704,6 +711,110 @@ fn rules_become_the_nearest_doubles() {
         }
     }
     assert!(Rule::<f64, 3>::from_exact(&fifth_degree(4).unwrap()).is_err());
+    // Three Gauss-Hermite nodes are the fifth-degree rule of one dimension, to the last bit: the root of the double 3 is the
+    // double nearest to √3.
+    let three_nodes = gauss_hermite::<f64, 1>(3).unwrap();
+    let fifth = Rule::<f64, 1>::from_exact(&fifth_degree(1).unwrap()).unwrap();
+    assert_eq!(three_nodes, fifth);
+}
+
+#[test]
+fn every_rule_name_gives_its_rule() {
+    let exact = |name: &str| name.parse::<RuleName>().unwrap().exact(4);
+    assert_eq!(exact("cubature-3"), third_degree(4));
+    assert_eq!(exact("unscented"), unscented(4, &Parameters::for_gaussian(4)));
+    assert_eq!(exact("cubature-5"), fifth_degree(4));
+    assert_eq!(exact("simplex-5"), simplex(4));
+    assert_eq!(exact("cubature-5-printed"), printed::fifth_degree(4));
+    assert_eq!(exact("simplex-5-printed-11"), printed::simplex_11(4));
+    assert_eq!(exact("simplex-5-printed-16"), printed::simplex_16(4));
+    let kappa_one = Parameters::of_kappa(whole(1));
+    let with_parameters = RuleName::Unscented(Some(kappa_one.clone()));
+    assert_eq!(with_parameters.exact(4), unscented(4, &kappa_one));
+    // All names, those of the Gauss-Hermite rules too, give a rule in doubles; and no two the same.
+    let rules: Vec<Rule<f64, 4>> = RuleName::NAMES
+        .iter()
+        .map(|name| name.parse::<RuleName>().unwrap().rule().unwrap())
+        .collect();
+    for (i, rule) in rules.iter().enumerate() {
+        assert!(!rules[..i].contains(rule), "{}", RuleName::NAMES[i]);
+    }
+    for m in 2..=5 {
+        let name = format!("gauss-hermite-{m}").parse::<RuleName>().unwrap();
+        assert_eq!(name.rule::<f64, 2>(), gauss_hermite::<f64, 2>(m));
+        assert_eq!(name.exact(2), Err(InvalidRule::NestedRoots));
+    }
+}
+
+// Filters in small integers
+
+#[test]
+fn in_small_integers_a_cubature_filter_is_the_kalman_filter_bit_for_bit() {
+    // The points ±2 e of the third-degree rule in four dimensions and its weights 1/8 keep all sums exact in doubles; so here are
+    // the equations that need an ordered number, with their measurement.
+    let rule = Rule::<f64, 4>::from_exact(&third_degree(4).unwrap()).unwrap();
+    let mut draw = Integers::new();
+    for _ in 0..50 {
+        let root = draw.unit_lower::<4>().map(|x| x as f64);
+        let covariance = root * root.transpose();
+        let mean = draw.doubles::<4, 1>();
+        let h = draw.doubles::<2, 4>();
+        let noise_root = draw.doubles::<2, 2>();
+        let noise = noise_root * noise_root.transpose();
+        let measurement = Measurement::Linear(h);
+        let points: Vec<_> = rule.points.iter().map(|xi| cubature::point(&root, xi, &mean)).collect();
+        let values: Vec<_> = points.iter().map(|point| measurement.of(point)).collect();
+        // The centre serves angles only; another one must change nothing.
+        let anywhere = draw.doubles::<2, 1>();
+        let value_mean = measurement.mean(&rule.weights, &values, &anywhere);
+        assert_eq!(value_mean, h * mean);
+
+        let weights = &rule.covariance_weights;
+        let innovation = |values: &[SVector<f64, 2>]| {
+            cubature::innovation_covariance(&measurement, weights, values, &value_mean, &noise)
+        };
+        assert_eq!(
+            innovation(&values),
+            kalman::innovation_covariance(&h, &covariance, &noise)
+        );
+        let cross = |values: &[SVector<f64, 2>]| {
+            cubature::cross_covariance(&measurement, weights, &points, &mean, values, &value_mean)
+        };
+        assert_eq!(cross(&values), kalman::cross_covariance(&covariance, &h));
+        // The values of the points are not those of other points.
+        let mut mixed_up = values.clone();
+        mixed_up.swap(0, 1);
+        if values[0] != values[1] {
+            assert_ne!(cross(&mixed_up), cross(&values));
+        }
+    }
+}
+
+#[test]
+fn diagonal_mixing_with_equal_weights_is_the_mixture() {
+    // Four estimates of equal variances weigh 1/4 each, and a half on either side.
+    let mut draw = Integers::new();
+    let weights = vec![0.25; 4];
+    for _ in 0..20 {
+        let estimates: Vec<Gaussian<f64, 3>> = (0..4)
+            .map(|_| {
+                let (a, b, c) = (draw.next_double(), draw.next_double(), draw.next_double());
+                Gaussian {
+                    mean: draw.doubles(),
+                    covariance: matrix![64.0, a, b; a, 128.0, c; b, c, 32.0],
+                }
+            })
+            .collect();
+        let mean = diagonal_mixing::mixed_mean(&estimates);
+        assert_eq!(mean, mixture_mean(&weights, &estimates));
+        let covariance = diagonal_mixing::mixed_covariance(&estimates, &mean);
+        let of_mixture = mixture_covariance(&weights, &estimates, &mean);
+        assert_eq!(covariance, of_mixture);
+        // With other variances the components weigh differently.
+        let mut unequal = estimates.clone();
+        unequal[0].covariance[(0, 0)] = 256.0;
+        assert_ne!(diagonal_mixing::mixed_covariance(&unequal, &mean), of_mixture);
+    }
 }
 
 // Matrices
@@ -925,12 +1036,18 @@ fn gamma_of_half(n: usize, root_pi: &RationalFunction) -> RationalFunction {
     })
 }
 
-/// The corrected simplex rule has the same points as a printed one, sums to one and is of degree two at least.
+/// The corrected simplex rule has the same points as a printed one, other weights on the midpoints, and is of degree two at least.
 fn check_simplex_is_right(n: usize, as_printed: &ExactRule) {
     let corrected = simplex(n).unwrap();
     assert_eq!(corrected.points, as_printed.points);
     assert_eq!(corrected.sum_of_weights(), whole(1));
     assert_eq!(exactness(&corrected, 2).degree, Some(2));
+    // The centre and the vertices are printed right, the midpoints are not.
+    let midpoints = 1 + 2 * (n + 1);
+    assert_eq!(corrected.weights[..midpoints], as_printed.weights[..midpoints]);
+    for (right, wrong) in corrected.weights.iter().zip(&as_printed.weights).skip(midpoints) {
+        assert_ne!(right, wrong);
+    }
 }
 
 /// How many ordered pairs have a squared inner product and a product of weights; both as text, which is unique.
@@ -1026,6 +1143,16 @@ impl Integers {
             .wrapping_mul(6_364_136_223_846_793_005)
             .wrapping_add(1_442_695_040_888_963_407);
         i64::try_from(self.0 >> 40).unwrap() % (2 * bound + 1) - bound
+    }
+
+    /// An integer from −9 to 9 as a double.
+    fn next_double(&mut self) -> f64 {
+        self.up_to(9) as f64
+    }
+
+    /// A matrix of such integers.
+    fn doubles<const R: usize, const C: usize>(&mut self) -> SMatrix<f64, R, C> {
+        SMatrix::from_fn(|_, _| self.next_double())
     }
 
     /// A lower triangular matrix with ones on its diagonal.

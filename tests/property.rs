@@ -7,7 +7,7 @@
 
 use immaculate::filter::cubature::{point, weighted_mean};
 use immaculate::gaussian::{Gaussian, log_density, mixture_covariance, mixture_mean};
-use immaculate::matrix::{cholesky, is_symmetric, ldl, log_determinant};
+use immaculate::matrix::{cholesky, is_positive_semidefinite, is_symmetric, ldl, log_determinant};
 use immaculate::model::angle::wrap;
 use immaculate::model::motion::{constant_velocity, coordinated_turn};
 use immaculate::model::{Measurement, PolarComponent};
@@ -151,6 +151,19 @@ proptest! {
     }
 }
 
+/// Straight to the left is π, whatever sign the zero has; the sensor's own place has a bearing too.
+#[test]
+fn the_bearing_of_a_target_straight_to_the_left_is_half_a_turn() {
+    let measurement = range_bearing([0.0, 0.0]);
+    for zero in [0.0, -0.0] {
+        let measured = measurement.of(&vector![-5.0, 1.0, zero, 1.0]);
+        assert_eq!(measured, vector![5.0, PI]);
+        let ahead = measurement.of(&vector![5.0, 1.0, zero, 1.0]);
+        assert_eq!(ahead, vector![5.0, 0.0]);
+        assert_eq!(measurement.of(&vector![zero, 1.0, zero, 1.0]), vector![0.0, 0.0]);
+    }
+}
+
 /// Components may come in any order, and a bearing alone is a measurement too.
 #[test]
 fn the_components_of_a_polar_measurement_come_as_they_are_named() {
@@ -218,9 +231,31 @@ proptest! {
         }
     }
 
+    /// A turn goes around a circle: its centre, a quarter turn to the left of the velocity and v/ω away, stays where it is. A coordinate
+    /// of the centre is a sum of numbers that are off by 4u of |x|, v/ω and vT each.
+    #[test]
+    fn a_turn_goes_around_a_circle(
+        turn_rate in 1e-3..1.0_f64, right: bool, interval in 0.01..10.0_f64,
+        state in [-1e5..1e5_f64, -300.0..300.0, -1e5..1e5, -300.0..300.0],
+    ) {
+        let turn_rate = if right { -turn_rate } else { turn_rate };
+        let before = SVector::from(state);
+        let after = coordinated_turn(&turn_rate, &interval) * before;
+        let centre = |state: &SVector<f64, 4>| vector![state[0] - state[3] / turn_rate, state[2] + state[1] / turn_rate];
+        let size = before.abs().max() + 600.0 * (1.0 / turn_rate.abs() + interval);
+        prop_assert!((centre(&after) - centre(&before)).abs().max() <= 16.0 * ROUNDOFF * size);
+        // To the left it goes counter-clockwise: the velocity turns by ωT, here less than half a turn or not looked at.
+        let area = before[1] * after[3] - before[3] * after[1];
+        if (turn_rate * interval).abs() < 3.0 && before[1].abs() > 1.0 {
+            prop_assert_eq!(area > 0.0, turn_rate > 0.0);
+        }
+    }
+
     /// A turn keeps the speed: its velocity block is a rotation. Two squares of numbers that are off by 2u, and the sums.
     #[test]
-    fn a_turn_keeps_the_speed(turn_rate in -1.0..1.0_f64, interval in 0.01..10.0_f64, vx in -300.0..300.0_f64, vy in -300.0..300.0_f64) {
+    fn a_turn_keeps_the_speed(
+        turn_rate in -1.0..1.0_f64, interval in 0.01..10.0_f64, vx in -300.0..300.0_f64, vy in -300.0..300.0_f64,
+    ) {
         let after = coordinated_turn(&turn_rate, &interval) * vector![0.0, vx, 0.0, vy];
         let (before, after) = (vx.hypot(vy), after[1].hypot(after[3]));
         prop_assert!((before - after).abs() <= 16.0 * ROUNDOFF * before);
@@ -316,6 +351,37 @@ proptest! {
             (Err(error), Some(pivot)) => prop_assert_eq!((error.pivot, error.decided), (pivot, true)),
             (result, expected) => prop_assert!(false, "{:?} {:?}", result, expected),
         }
+    }
+
+    /// L D Lᵀ is positive semidefinite exactly when no entry of D is negative. Nothing is rounded, since all numbers are integers.
+    #[test]
+    fn a_matrix_is_positive_semidefinite_exactly_when_no_pivot_is_negative((lower, diagonal) in integer_factors(-1..=4)) {
+        let matrix = product(&lower, diagonal);
+        let has_negative = diagonal.iter().any(|&pivot| pivot < 0);
+        prop_assert_eq!(is_positive_semidefinite(&matrix), !has_negative);
+    }
+
+    /// A noise that enters through fewer inputs than the state has entries is positive semidefinite as it is rounded, too.
+    #[test]
+    fn a_covariance_of_low_rank_is_positive_semidefinite_as_rounded(
+        input in prop::collection::vec(-10.0..10.0_f64, 8), scales in [-3..=3_i32, -3..=3_i32, -3..=3_i32, -3..=3_i32],
+    ) {
+        let scales = SVector::from(scales.map(|scale| 10.0_f64.powi(scale)));
+        let input = SMatrix::from_diagonal(&scales) * SMatrix::<f64, 4, 2>::from_vec(input);
+        let covariance = input * input.transpose();
+        prop_assert!(is_positive_semidefinite(&covariance));
+    }
+
+    /// A covariance of rank one has full correlations; a millionth part of one variance less, and it is a covariance no longer.
+    #[test]
+    fn a_variance_too_small_for_its_covariances_is_no_variance(
+        input in [0.1..10.0_f64, 0.1..10.0, 0.1..10.0, 0.1..10.0], signs: [bool; 4], i in 0..4_usize,
+    ) {
+        let input = SVector::<f64, 4>::from_fn(|row, _| if signs[row] { input[row] } else { -input[row] });
+        let mut covariance = input * input.transpose();
+        prop_assert!(is_positive_semidefinite(&covariance));
+        covariance[(i, i)] *= 1.0 - 1e-6;
+        prop_assert!(!is_positive_semidefinite(&covariance));
     }
 
     /// The factor's product is the matrix up to (n + 2)u of √(PᵢᵢPⱼⱼ) for the factor (Higham, Accuracy and Stability of Numerical

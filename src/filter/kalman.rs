@@ -2,6 +2,7 @@
 //!
 //! After this file the reader knows what the cubature filters approximate, and what they must equal on a linear problem.
 
+use crate::matrix::mirrored;
 use crate::number::Field;
 use nalgebra::{SMatrix, SVector};
 
@@ -12,7 +13,7 @@ pub fn predicted_mean<T: Field, const N: usize>(transition: &SMatrix<T, N, N>, m
     transition * mean
 }
 
-/// Predicted covariance, P⁻ = F P Fᵀ + Q.
+/// Predicted covariance, P⁻ = F P Fᵀ + Q, with its lower triangle [`mirrored`].
 ///
 /// Source: Kalman 1960.
 ///
@@ -22,7 +23,7 @@ pub fn predicted_covariance<T: Field, const N: usize>(
     covariance: &SMatrix<T, N, N>,
     noise: &SMatrix<T, N, N>,
 ) -> SMatrix<T, N, N> {
-    transition * covariance * transition.transpose() + noise
+    mirrored(transition * covariance * transition.transpose() + noise)
 }
 
 /// Cross-covariance of state and measurement, C = P⁻ Hᵀ.

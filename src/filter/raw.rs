@@ -5,7 +5,8 @@
 //! sixteen digits are gone.
 //!
 //! These are *forms*: other algebra for the same exact values. They are right for measurements without angles only, since the
-//! raw moment of an angle depends on where the circle is cut.
+//! raw moment of an angle depends on where the circle is cut, and for weights that sum to one, which the covariance weights of the
+//! (α, β, κ) unscented rule do not.
 
 use crate::number::Field;
 use nalgebra::{SMatrix, SVector};

@@ -2,7 +2,7 @@
 //!
 //! After this file the reader knows how a residual corrects a prediction once ẑ, S and C are there, wherever they came from.
 
-use crate::matrix::{Ldl, solve};
+use crate::matrix::{Ldl, mirrored, solve};
 use crate::number::Field;
 use nalgebra::{SMatrix, SVector};
 
@@ -63,8 +63,8 @@ pub fn updated_mean<T: Field, const N: usize, const M: usize>(
 /// | W     | `gain`                  | N × M | [`gain`]               |
 /// | P_zz  | `innovation_covariance` | M × M | innovation covariance  |
 ///
-/// Why: the conditional covariance of a joint Gaussian. Nothing is symmetrised: W S Wᵀ is symmetric up to rounding, and what
-/// rounding leaves is seen by nobody, since factorisations read the lower triangle only.
+/// Why: the conditional covariance of a joint Gaussian. Its lower triangle is kept and [`mirrored`]: rounding must not let the two
+/// triangles part.
 ///
 /// Evidence: `the_kalman_update_is_conditioning_of_a_gaussian` (symbolic).
 pub fn updated_covariance<T: Field, const N: usize, const M: usize>(
@@ -72,5 +72,5 @@ pub fn updated_covariance<T: Field, const N: usize, const M: usize>(
     gain: &SMatrix<T, N, M>,
     innovation_covariance: &SMatrix<T, M, M>,
 ) -> SMatrix<T, N, N> {
-    covariance - gain * innovation_covariance * gain.transpose()
+    mirrored(covariance - gain * innovation_covariance * gain.transpose())
 }

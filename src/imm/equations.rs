@@ -230,7 +230,8 @@ impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
     }
 
     /// Cubature filters with second moments about the origin, as zhu2016 (24), (45) and (48) print them: a form, equal in exact
-    /// arithmetic. For measurements without angles.
+    /// arithmetic for measurements without angles and rules whose covariance weights sum to one (the (α, β, κ) unscented rule's do only
+    /// for β = α² − 1).
     pub fn raw_cubature() -> Self {
         Self {
             predicted_covariance: |problem, _, now, j| {

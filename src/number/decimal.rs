@@ -1,4 +1,6 @@
 //! Decimals: how an exact number is read from one, and written as the nearest one.
+//!
+//! After this file the reader knows that no digit is lost on the way in, and how the nearest decimal is found on the way out.
 
 use num_bigint::BigInt;
 use num_integer::Integer;

@@ -1,5 +1,7 @@
 //! Doubles as a number system, with the same bits on every platform.
 //!
+//! After this file the reader knows why a run gives the same bits everywhere, and what an equation may not call.
+//!
 //! How the same bits are obtained:
 //!
 //! - IEEE 754 requires that + − × ÷ and the square root are rounded correctly, so they have one answer everywhere; Rust

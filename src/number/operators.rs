@@ -1,5 +1,7 @@
 //! The operators `+ − × ÷` of a number system, by value, by reference and in place, all from one method each.
 //!
+//! After this file the reader knows why five methods are enough for the twenty-six operators of a number system.
+//!
 //! A number system writes the methods `plus`, `minus`, `times`, `negative` and, if it can divide, `over`, with the
 //! mathematics in them; what follows is only the wiring that Rust and nalgebra ask for. It is a macro because a
 //! function cannot implement a trait, and a blanket implementation of a foreign trait is not allowed.

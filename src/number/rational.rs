@@ -1,5 +1,7 @@
 //! Exact rational numbers: the ground of every proof with no tolerance.
 //!
+//! After this file the reader knows how a double goes in exactly and comes out as the nearest one.
+//!
 //! [`Rational`] is the fraction of two integers of any size, in lowest terms. What it adds to the number it wraps:
 //! division by zero is a value ([`Field::undecided`]) and not a panic, a double goes in exactly
 //! ([`Rational::from_f64`]) and comes out as the nearest one ([`Rational::to_f64`]), and a decimal is read exactly

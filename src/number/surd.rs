@@ -1,5 +1,7 @@
 //! Surds: sums of rational multiples of square roots, such as `1 + 3/2·√2`, exactly.
 //!
+//! After this file the reader knows how sums of square roots are compared without a tolerance.
+//!
 //! The points and weights of cubature rules are made of them. A surd is kept as a map from square-free radicands to
 //! non-zero rational coefficients, and that form is unique, because the square roots of different square-free integers
 //! are linearly independent over the rationals (Besicovitch 1940). So two surds are equal exactly if their maps are,

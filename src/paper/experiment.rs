@@ -1,4 +1,6 @@
 //! A scenario and its runs, for judges that ask about several scenarios.
+//!
+//! After this file the reader knows how a judge gets the runs that it asks for.
 
 use super::Effort;
 use super::monte_carlo::{Progress, Run, run};

@@ -1,4 +1,6 @@
 //! The ledger of claims for people.
+//!
+//! After this file the reader knows how a judged claim is printed; what the verdicts mean is in [`crate::paper::verdict`].
 
 use super::wrapped;
 use crate::paper::specification::Specification;

@@ -1,4 +1,7 @@
 //! A reproduction for people: published and computed side by side.
+//!
+//! After this file the reader knows what each column of a reproduced table is, and which published figure stands beside which
+//! computed one.
 
 use super::{standard_errors, table, wrapped};
 use crate::paper::result::{ErrorFigure, Performance, Quantity, Reproduction};

@@ -1,4 +1,6 @@
 //! A cubature rule for people: points and weights, exact and decimal, with the degree that its exact moments prove.
+//!
+//! After this file the reader knows what is listed of a rule, and up to which dimension its degree is proven anew each time.
 
 use super::table;
 use crate::number::{Field, Surd};
@@ -128,7 +130,10 @@ fn describe_gauss_hermite(m: usize, shown: &str, n: usize) -> Result<Description
         });
     }
     let count = u32::try_from(n).ok().and_then(|n| m.checked_pow(n));
-    let points = count.unwrap_or(usize::MAX);
+    let points = count.ok_or(InvalidRule::TooLarge {
+        dimension: n,
+        greatest: usize::MAX.ilog(m) as usize,
+    })?;
     // Odd moments vanish on both sides; a product rule has the degree of its one coordinate.
     let gaussian = |power: usize| gaussian_moment(&[power]);
     let wrong = |power: &usize| gauss_hermite::moment(&nodes, *power) != Surd::rational(&gaussian(*power));

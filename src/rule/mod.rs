@@ -24,6 +24,8 @@
 //! | simplex, fifth degree (liu2017)          | n² + 3n + 3 | 5      | [`simplex`]       |
 //! | Gauss-Hermite product, a reference       | mⁿ          | 2m − 1 | [`gauss_hermite`] |
 //! | weights that the papers print wrongly    |             | none   | [`printed`]       |
+//!
+//! (The unscented rule has degree 5 in one dimension when n + λ = 3.)
 
 pub mod fifth_degree;
 pub mod gauss_hermite;
@@ -67,6 +69,14 @@ pub enum InvalidRule {
         "the unscented parameters give n + lambda = {radius_squared}, which must be positive: it is the square of the points' distance from the centre"
     )]
     Radius {
+        /// n + λ.
+        radius_squared: String,
+    },
+    /// Parameters for which the points' radius has no exact form here.
+    #[error(
+        "the unscented parameters give n + lambda = {radius_squared}, whose root has too many digits to be exact; give fewer decimals"
+    )]
+    RadiusDigits {
         /// n + λ.
         radius_squared: String,
     },

@@ -1,4 +1,6 @@
 //! The names under which rules are asked for.
+//!
+//! After this file the reader knows which rules can be asked for, and what each name stands for.
 
 use super::gauss_hermite::gauss_hermite;
 use super::unscented::{Parameters, unscented};

@@ -134,7 +134,7 @@ pub fn on_diagonal_squared<T: Field>(n: &T, j: &T) -> T {
 /// ```
 ///
 /// Why: |aᵢ + aₗ|² = 2 − 2/n, so these are unit vectors. At n = 2 they are the mirror images −aₖ of the third vertex, and the 13
-/// points stand at 7 places.
+/// points stand at 7 places; at n = 3 the midpoints of opposite edges are mirror images, and the 21 points stand at 15.
 ///
 /// Evidence: as [`simplex`], `simplex_points_coincide_at_dimension_two` (exact).
 pub fn edge_midpoints(n: usize) -> Vec<Vec<Surd>> {

@@ -57,7 +57,8 @@ impl Parameters {
 ///
 /// # Errors
 ///
-/// [`InvalidRule::Dimension`] in dimension zero, [`InvalidRule::Radius`] when n + λ is not positive.
+/// [`InvalidRule::Dimension`] in dimension zero, [`InvalidRule::Radius`] when n + λ is not positive, [`InvalidRule::RadiusDigits`]
+/// when its root is beyond [`Surd::root`].
 ///
 /// # Examples
 ///
@@ -88,6 +89,11 @@ pub fn unscented(n: usize, parameters: &Parameters) -> Result<ExactRule, Invalid
         });
     }
     let radius = Surd::root(&radius_squared);
+    if !radius.is_decided() {
+        return Err(InvalidRule::RadiusDigits {
+            radius_squared: radius_squared.to_string(),
+        });
+    }
     let axes: Vec<_> = (0..n).map(|i| along_axis(n, i, &radius)).collect();
     let mut points = axes.clone();
     points.extend(opposite(&axes));

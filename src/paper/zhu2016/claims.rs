@@ -541,7 +541,7 @@ fn steady_bound(variance: f64, acceleration_variance: f64) -> f64 {
     let alpha = -(index * index + 8.0 * index - (index + 4.0) * root) / 8.0;
     let beta = (index * index + 4.0 * index - index * root) / 4.0;
     let [_, vx, _, vy] = super::INITIAL_STATE;
-    let acceleration = vx.hypot(vy) * super::TURN_RATE;
+    let acceleration = (vx * vx + vy * vy).sqrt() * super::TURN_RATE;
     let lag = (1.0 - alpha) * acceleration * super::INTERVAL * super::INTERVAL / beta;
     (variance + lag * lag).sqrt()
 }
