@@ -25,3 +25,8 @@ pub mod paper;
 pub mod report;
 pub mod rule;
 pub mod statistics;
+
+/// The README's example is run with the others.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

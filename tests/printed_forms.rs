@@ -11,7 +11,7 @@ use immaculate::filter::cubature::{point, propagated_point, weighted_covariance,
 use immaculate::filter::raw::{raw_covariance, raw_second_moment};
 use immaculate::gaussian::log_density;
 use immaculate::imm::printed::{cubature_with_likelihood_21, log_density_21, log_density_57, mode_probability_22};
-use immaculate::imm::probability::{log_evidence, mode_probability};
+use immaculate::imm::probability::{evidence, mode_probability, relative_likelihood};
 use immaculate::matrix::ldl;
 use immaculate::model::{Measurement, PolarComponent};
 use immaculate::number::{Field, Rational, Real, Surd};
@@ -134,8 +134,14 @@ fn printed_likelihood_without_the_determinant_of_two_pi_is_not_a_density() {
     // units of each, move no probability, although the second mode spreads its own over four times the area.
     let (narrow, wide) = (Matrix2::identity(), Matrix2::identity() * 4.0);
     let (near, far) = (vector![1.0, 0.5], vector![2.0, 1.0]);
-    let bare = probabilities(&[without_determinant(&near, &narrow), without_determinant(&far, &wide)]);
-    let corrected = probabilities(&[log_density(&near, &ldl(&narrow)), log_density(&far, &ldl(&wide))]);
+    let bare = probabilities(
+        &[without_determinant(&near, &narrow), without_determinant(&far, &wide)],
+        &[0.5, 0.5],
+    );
+    let corrected = probabilities(
+        &[log_density(&near, &ldl(&narrow)), log_density(&far, &ldl(&wide))],
+        &[0.5, 0.5],
+    );
     assert_relative(bare[0], 0.5);
     assert_relative(corrected[0], 0.8);
     assert_relative(corrected[1], 0.2);
@@ -190,8 +196,14 @@ fn printed_likelihood_exponent_squares_the_determinant() {
     // deviations' products, √4 = 2; the printed ones are its square.
     let (small, large) = (matrix![1.0, 0.0; 0.0, 1.0], matrix![2.0, 0.0; 0.0, 2.0]);
     let (near, far) = (vector![1.0, 0.0], vector![std::f64::consts::SQRT_2, 0.0]);
-    let corrected = probabilities(&[log_density(&near, &ldl(&small)), log_density(&far, &ldl(&large))]);
-    let printed = probabilities(&[log_density_21(&near, &ldl(&small)), log_density_21(&far, &ldl(&large))]);
+    let corrected = probabilities(
+        &[log_density(&near, &ldl(&small)), log_density(&far, &ldl(&large))],
+        &[0.5, 0.5],
+    );
+    let printed = probabilities(
+        &[log_density_21(&near, &ldl(&small)), log_density_21(&far, &ldl(&large))],
+        &[0.5, 0.5],
+    );
     assert_relative(corrected[0], 2.0 / 3.0);
     assert_relative(corrected[1], 1.0 / 3.0);
     assert_relative(printed[0], 4.0 / 5.0);
@@ -236,25 +248,21 @@ fn printed_normaliser_makes_the_likelihood_cancel() {
     let predicted = [0.5, 0.375, 0.125];
     // Likelihoods of 1/16, 1 and 8.
     let log_likelihoods = [-4.0, 0.0, 3.0].map(|power: f64| power * 2.0_f64.ln());
-    let evidence = log_evidence(&log_likelihoods, &predicted);
+    let corrected = probabilities(&log_likelihoods, &predicted);
     // By hand: 2⁻⁴/2, 3/8 and 2³/8, over their sum.
     let terms = [1.0 / 32.0, 3.0 / 8.0, 1.0];
     let sum: f64 = terms.iter().sum();
     for j in 0..3 {
         let printed = mode_probability_22(&log_likelihoods[j], &predicted, j);
-        let corrected = mode_probability(&log_likelihoods[j], &predicted[j], &evidence);
         assert_relative(printed, predicted[j]);
-        assert_relative(corrected, terms[j] / sum);
-        assert!((corrected - predicted[j]).abs() > 0.1);
+        assert_relative(corrected[j], terms[j] / sum);
+        assert!((corrected[j] - predicted[j]).abs() > 0.1);
     }
 
     // Whatever is measured: here the mode is fifty standard deviations off, and keeps its probability.
     let hopeless = -1250.0 / 2.0;
     assert_relative(mode_probability_22(&hopeless, &predicted, 0), predicted[0]);
-    let log_likelihoods = [hopeless, 0.0, 0.0];
-    let evidence = log_evidence(&log_likelihoods, &predicted);
-    let corrected: f64 = mode_probability(&hopeless, &predicted[0], &evidence);
-    assert!(corrected < 1e-200);
+    assert!(probabilities(&[hopeless, 0.0, 0.0], &predicted)[0] < 1e-200);
 
     // And where the likelihood is zero as a double the printed form has no answer at all.
     assert!(mode_probability_22(&-1000.0, &predicted, 0).is_nan());
@@ -312,11 +320,11 @@ fn determinant(matrix: &Matrix2<f64>) -> f64 {
     matrix[(0, 0)] * matrix[(1, 1)] - matrix[(0, 1)] * matrix[(1, 0)]
 }
 
-/// The probabilities of modes that were equally probable, after a measurement with these log-likelihoods.
-fn probabilities(log_likelihoods: &[f64; 2]) -> [f64; 2] {
-    let predicted = [0.5, 0.5];
-    let evidence = log_evidence(log_likelihoods, &predicted);
-    log_likelihoods.map(|log_likelihood| mode_probability(&log_likelihood, &0.5, &evidence))
+/// The probabilities of modes after a measurement with these log-likelihoods.
+fn probabilities<const R: usize>(log_likelihoods: &[f64; R], predicted: &[f64; R]) -> [f64; R] {
+    let likelihoods = std::array::from_fn::<_, R, _>(|j| relative_likelihood(log_likelihoods, predicted, j));
+    let evidence = evidence(&likelihoods, predicted);
+    std::array::from_fn(|j| mode_probability(&likelihoods[j], &predicted[j], &evidence))
 }
 
 /// The integral of exp f over all residuals, by the trapezoid rule on a lattice of half a standard deviation that the root of the

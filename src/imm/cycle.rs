@@ -225,6 +225,10 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
     /// The mode probabilities after the measurement.
     fn weigh(&mut self) -> Result<(), Failure> {
         let (e, problem, previous, now) = self.parts();
+        for j in 0..problem.modes.len() {
+            now.relative_likelihoods[j] = (e.relative_likelihood)(problem, previous, now, j);
+        }
+        now.evidence = (e.evidence)(problem, previous, now);
         now.log_evidence = (e.log_evidence)(problem, previous, now);
         if !is_finite(&now.log_evidence) {
             return Err(Failure {

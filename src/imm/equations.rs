@@ -84,7 +84,11 @@ pub struct Equations<T, const N: usize, const M: usize> {
     pub combined_prediction_mean: OfAll<T, N, M, SVector<T, N>>,
     /// Covariance of the combined prediction, [`mixture_covariance`].
     pub combined_prediction_covariance: OfAll<T, N, M, SMatrix<T, N, N>>,
-    /// ln C, [`probability::log_evidence`].
+    /// Λⱼ, [`probability::relative_likelihood`].
+    pub relative_likelihood: OfMode<T, N, M, T>,
+    /// C, [`probability::evidence`].
+    pub evidence: OfAll<T, N, M, T>,
+    /// m + ln C, [`probability::log_evidence`].
     pub log_evidence: OfAll<T, N, M, T>,
     /// μⱼ, [`probability::mode_probability`].
     pub mode_probability: OfMode<T, N, M, T>,
@@ -175,14 +179,17 @@ impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
                 let mean = &now.combined_prediction.mean;
                 mixture_covariance(&now.predicted_mode_probabilities, &now.predicted, mean)
             },
+            relative_likelihood: |_, _, now, j| {
+                probability::relative_likelihood(&now.log_likelihoods, &now.predicted_mode_probabilities, j)
+            },
+            evidence: |_, _, now| probability::evidence(&now.relative_likelihoods, &now.predicted_mode_probabilities),
             log_evidence: |_, _, now| {
                 let predicted = &now.predicted_mode_probabilities;
-                probability::log_evidence(&now.log_likelihoods, predicted)
+                probability::log_evidence(&now.log_likelihoods, predicted, &now.evidence)
             },
             mode_probability: |_, _, now, j| {
                 let predicted = &now.predicted_mode_probabilities[j];
-                let log_likelihood = &now.log_likelihoods[j];
-                probability::mode_probability(log_likelihood, predicted, &now.log_evidence)
+                probability::mode_probability(&now.relative_likelihoods[j], predicted, &now.evidence)
             },
             combined_mean: |_, _, now| mixture_mean(&now.mode_probabilities, &now.updated),
             combined_covariance: |_, _, now| {

@@ -8,7 +8,7 @@
 //! mixed estimates                moments of the mixture                [crate::gaussian]
 //! predicted, then updated        one filter a mode                     [crate::filter]
 //! log-likelihoods                ln N(ν; 0, S)                         [crate::gaussian]
-//! mode probabilities             μⱼ = Lⱼ cⱼ / Σᵢ Lᵢ cᵢ                 [probability]
+//! mode probabilities             μⱼ = Lⱼ cⱼ / Σᵢ Lᵢ cᵢ                [probability]
 //! combined estimate              moments of the mixture                [crate::gaussian]
 //! ```
 //!

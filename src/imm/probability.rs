@@ -3,7 +3,6 @@
 //! After this file the reader knows the only part of the cycle that is not linear algebra, and why it is written in logarithms.
 
 use crate::number::{Field, Real};
-use std::cmp::Ordering;
 
 /// Predicted mode probability — zhu2016 (54), liu2017 (13).
 ///
@@ -80,81 +79,113 @@ pub fn mixing_probability<T: Field>(
     transition[previous][current].clone() * mode_probabilities[previous].clone() / predicted_mode_probability.clone()
 }
 
-/// Logarithm of the measurement's likelihood under all modes together — zhu2016 (58), liu2017 (22).
+/// Likelihood of a mode relative to the greatest one — zhu2016 (58), liu2017 (22).
 ///
 /// ```text
-/// ln C,   C = Σⱼ Lⱼ cⱼ
-///       = m + ln Σⱼ exp( ln Lⱼ + ln cⱼ − m ),   m = maxⱼ ( ln Lⱼ + ln cⱼ )
+/// Λⱼ = Lⱼ / e^m = exp( ln Lⱼ − m ),   m = max ln L over the modes that can be reached
 /// ```
 ///
-/// | paper | here                           | shape | meaning                         |
-/// |-------|--------------------------------|-------|---------------------------------|
-/// | ln Lⱼ | `log_likelihoods[j]`           | R     | log-likelihood of mode j        |
-/// | cⱼ    | `predicted_mode_probabilities` | R     | predicted mode probabilities    |
+/// | paper | here                           | shape | meaning                      |
+/// |-------|--------------------------------|-------|------------------------------|
+/// | ln Lⱼ | `log_likelihoods[j]`           | R     | log-likelihood of mode j     |
+/// | cⱼ    | `predicted_mode_probabilities` | R     | predicted mode probabilities |
+/// | j     | `mode`                         |       | the mode                     |
 ///
-/// Why: the second line is the first for any m; with the greatest term as m one exponential is 1 and none overflows, however small
-/// the likelihoods are. Modes of probability zero have no term.
+/// Why: the mode probabilities depend on ratios of likelihoods only, so all may be divided by the greatest. Then one is 1 and none
+/// overflows, however small they are, and an outlier costs no digits of the probabilities' sum. A mode that cannot be reached has
+/// no say in m, and a likelihood of zero.
+///
+/// # Examples
+///
+/// ```
+/// use immaculate::imm::probability::relative_likelihood;
+///
+/// // e⁻¹⁰⁰⁰ and e⁻¹⁰⁰¹ are zero as doubles; their ratio is e⁻¹.
+/// let second: f64 = relative_likelihood(&[-1000.0, -1001.0], &[0.5, 0.5], 1);
+/// assert_eq!(second, libm::exp(-1.0));
+/// ```
+///
+/// Evidence: `likelihoods_that_underflow_a_double_leave_the_probabilities_right`.
+pub fn relative_likelihood<T: Real>(log_likelihoods: &[T], predicted_mode_probabilities: &[T], mode: usize) -> T {
+    if predicted_mode_probabilities[mode].is_zero() {
+        return T::zero();
+    }
+    let m = greatest(log_likelihoods, predicted_mode_probabilities);
+    (log_likelihoods[mode].clone() - m).exp()
+}
+
+/// m, the greatest log-likelihood of the modes that can be reached.
+///
+/// Source: as [`relative_likelihood`].
+fn greatest<T: Real>(log_likelihoods: &[T], predicted_mode_probabilities: &[T]) -> T {
+    let reachable = log_likelihoods
+        .iter()
+        .zip(predicted_mode_probabilities)
+        .filter(|(_, probability)| !probability.is_zero())
+        .map(|(log_likelihood, _)| log_likelihood);
+    let greater = |a, b| if b > a { b } else { a };
+    reachable.reduce(greater).map_or_else(T::undecided, Clone::clone)
+}
+
+/// The normaliser of the mode probabilities — zhu2016 (58), liu2017 (22).
+///
+/// ```text
+/// C = Σⱼ Λⱼ cⱼ
+/// ```
+///
+/// | paper  | here                           | shape | meaning                                                   |
+/// |--------|--------------------------------|-------|-----------------------------------------------------------|
+/// | Lⱼ, Λⱼ | `likelihoods[j]`               | R     | likelihoods, all relative to the same one                  |
+/// | cⱼ     | `predicted_mode_probabilities` | R     | predicted mode probabilities                               |
+///
+/// Why: law of total probability; C e^m is the likelihood of the measurement under all modes together.
 ///
 /// Errata: zhu2016 (58) sums to "nm" for r (notational). liu2017 (22) prints Lʲ under the sum over i, with which it cancels and the
 /// measurement changes no probability: [`printed::mode_probability_22`](super::printed::mode_probability_22).
 ///
-/// Evidence: `likelihoods_that_underflow_a_double_leave_the_probabilities_right`,
-/// `printed_normaliser_makes_the_likelihood_cancel`.
-pub fn log_evidence<T: Real>(log_likelihoods: &[T], predicted_mode_probabilities: &[T]) -> T {
-    // (m, Σ exp(term − m)) over the terms so far; a new greatest term rescales the sum.
-    let mut so_far: Option<(T, T)> = None;
-    for (log_likelihood, probability) in log_likelihoods.iter().zip(predicted_mode_probabilities) {
-        if probability.is_zero() {
-            continue;
-        }
-        let term = log_likelihood.clone() + probability.ln();
-        so_far = Some(match so_far {
-            None => (term, T::one()),
-            Some((m, sum)) if term.partial_cmp(&m) == Some(Ordering::Greater) => {
-                let rescaled = sum * (m - term.clone()).exp();
-                (term, rescaled + T::one())
-            }
-            Some((m, sum)) => {
-                let share = (term - m.clone()).exp();
-                (m, sum + share)
-            }
-        });
+/// Evidence: `printed_normaliser_makes_the_likelihood_cancel`.
+pub fn evidence<T: Field>(likelihoods: &[T], predicted_mode_probabilities: &[T]) -> T {
+    let mut sum = T::zero();
+    for (likelihood, probability) in likelihoods.iter().zip(predicted_mode_probabilities) {
+        sum += likelihood.clone() * probability.clone();
     }
-    match so_far {
-        Some((m, sum)) => m + sum.ln(),
-        None => T::undecided(),
-    }
+    sum
+}
+
+/// Logarithm of the measurement's likelihood under all modes together, ln(C e^m) = m + ln C.
+///
+/// Source: zhu2016 (58), whose denominator it is; what a Bayesian comparison of whole filters sums over the steps.
+///
+/// Evidence: `a_factor_common_to_all_likelihoods_changes_no_probability` (property).
+pub fn log_evidence<T: Real>(log_likelihoods: &[T], predicted_mode_probabilities: &[T], evidence: &T) -> T {
+    greatest(log_likelihoods, predicted_mode_probabilities) + evidence.ln()
 }
 
 /// Mode probability — zhu2016 (58), liu2017 (22).
 ///
 /// ```text
-/// μⱼ = Lⱼ cⱼ / C = exp( ln Lⱼ + ln cⱼ − ln C )
+/// μⱼ = Λⱼ cⱼ / C
 /// ```
 ///
-/// | paper | here                         | meaning                                                |
-/// |-------|------------------------------|--------------------------------------------------------|
-/// | ln Lⱼ | `log_likelihood`             | log-likelihood of mode j                               |
-/// | cⱼ    | `predicted_mode_probability` | predicted probability of mode j                        |
-/// | ln C  | `log_evidence`               | [`log_evidence`]                                       |
+/// | paper  | here                         | meaning                                  |
+/// |--------|------------------------------|------------------------------------------|
+/// | Lⱼ, Λⱼ | `likelihood`                 | [`relative_likelihood`]                  |
+/// | cⱼ     | `predicted_mode_probability` | predicted probability of mode j          |
+/// | C      | `evidence`                   | [`evidence`]                             |
 ///
-/// Why: Bayes' rule. A mode of predicted probability zero keeps it.
+/// Why: Bayes' rule.
 ///
 /// # Examples
 ///
 /// ```
-/// use immaculate::imm::probability::{log_evidence, mode_probability};
+/// use immaculate::imm::probability::{evidence, mode_probability};
 ///
-/// // Likelihoods e⁻¹⁰⁰⁰ and e⁻¹⁰⁰¹ are zero as doubles; their ratio is e.
-/// let evidence = log_evidence(&[-1000.0, -1001.0], &[0.5, 0.5]);
-/// let first: f64 = mode_probability(&-1000.0, &0.5, &evidence);
-/// assert!((first - 1.0 / (1.0 + (-1.0_f64).exp())).abs() < 1e-12);
+/// let (likelihoods, predicted) = ([1.0, 0.5], [0.25, 0.5]);
+/// let c = evidence(&likelihoods, &predicted);
+/// assert_eq!(mode_probability(&likelihoods[0], &predicted[0], &c), 0.5);
 /// ```
 ///
-/// Evidence: as [`log_evidence`], `permuting_the_modes_permutes_the_answer` (property).
-pub fn mode_probability<T: Real>(log_likelihood: &T, predicted_mode_probability: &T, log_evidence: &T) -> T {
-    if predicted_mode_probability.is_zero() {
-        return T::zero();
-    }
-    (log_likelihood.clone() + predicted_mode_probability.ln() - log_evidence.clone()).exp()
+/// Evidence: `likelihoods_that_underflow_a_double_leave_the_probabilities_right`, `permuting_the_modes_permutes_the_answer` (property).
+pub fn mode_probability<T: Field>(likelihood: &T, predicted_mode_probability: &T, evidence: &T) -> T {
+    likelihood.clone() * predicted_mode_probability.clone() / evidence.clone()
 }

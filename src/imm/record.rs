@@ -53,7 +53,11 @@ pub struct Step<T, const N: usize, const M: usize> {
     pub log_likelihoods: Vec<T>,
     /// The combined estimate before the measurement.
     pub combined_prediction: Gaussian<T, N>,
-    /// ln C, the log-likelihood of the measurement under all modes.
+    /// Λⱼ, the likelihoods relative to the greatest.
+    pub relative_likelihoods: Vec<T>,
+    /// C, the normaliser of the mode probabilities.
+    pub evidence: T,
+    /// The log-likelihood of the measurement under all modes.
     pub log_evidence: T,
     /// μⱼ; the predicted ones at a missed detection.
     pub mode_probabilities: Vec<T>,
@@ -85,6 +89,8 @@ impl<T: Field, const N: usize, const M: usize> Step<T, N, M> {
             updated: vec![Gaussian::zeros(); modes],
             log_likelihoods: vec![T::zero(); modes],
             combined_prediction: Gaussian::zeros(),
+            relative_likelihoods: vec![T::zero(); modes],
+            evidence: T::zero(),
             log_evidence: T::zero(),
             mode_probabilities: vec![T::zero(); modes],
             combined: Gaussian::zeros(),
@@ -101,6 +107,7 @@ impl<T: Field, const N: usize, const M: usize> Step<T, N, M> {
             self.cross_covariances[j].fill(T::undecided());
             self.gains[j].fill(T::undecided());
             self.log_likelihoods[j] = T::undecided();
+            self.relative_likelihoods[j] = T::undecided();
             self.predicted_square_roots[j].fill(T::undecided());
             for point in &mut self.predicted_points[j] {
                 point.fill(T::undecided());
@@ -109,6 +116,7 @@ impl<T: Field, const N: usize, const M: usize> Step<T, N, M> {
                 value.fill(T::undecided());
             }
         }
+        self.evidence = T::undecided();
         self.log_evidence = T::undecided();
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! After this file the reader knows how a judged claim is printed; what the verdicts mean is in [`crate::paper::verdict`].
 
-use super::wrapped;
+use super::{citation, wrapped};
 use crate::paper::specification::Specification;
 use crate::paper::verdict::{Judgement, Verdict};
 use std::fmt::Write;
@@ -46,9 +46,5 @@ pub fn summary(judgements: &[Judgement]) -> String {
 
 /// The paper whose claims follow.
 pub fn heading(specification: &Specification) -> String {
-    let paper = &specification.paper;
-    format!(
-        "{}  {}\n         {} doi:{}\n\n",
-        paper.key, paper.title, paper.venue, paper.doi
-    )
+    format!("{}\n", citation(&specification.paper))
 }

@@ -7,6 +7,7 @@ pub mod claims;
 pub mod reproduction;
 pub mod rule;
 
+use crate::paper::specification::Citation;
 use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
 
 /// The width that all tables fit.
@@ -42,6 +43,15 @@ pub fn standard_errors(value: f64) -> String {
     } else {
         format!("{value:+.0}")
     }
+}
+
+/// A paper's key, title and source, the key standing out.
+fn citation(paper: &Citation) -> String {
+    let indent = " ".repeat(9);
+    let mut text = wrapped(&paper.title, &indent);
+    text.replace_range(..indent.len(), &format!("{:<9}", paper.key));
+    text.push_str(&wrapped(&format!("{}, doi:{}", paper.venue, paper.doi), &indent));
+    text
 }
 
 /// A paragraph broken at words, every line indented.

@@ -3,7 +3,7 @@
 //! After this file the reader knows what each column of a reproduced table is, and which published figure stands beside which
 //! computed one.
 
-use super::{standard_errors, table, wrapped};
+use super::{citation, standard_errors, table, wrapped};
 use crate::paper::result::{ErrorFigure, Performance, Quantity, Reproduction};
 use crate::paper::specification::{Choices, Specification, Table};
 use crate::paper::{Paper, liu2017, zhu2016};
@@ -130,13 +130,9 @@ with theirs (2). Inside: the part of the steps whose mean over runs is within th
 ";
 
 fn head(specification: &Specification, reproduction: &Reproduction) -> String {
-    let paper = &specification.paper;
     format!(
-        "{}  {}\n         {} doi:{}\n         {} runs of {} steps, seed {}; choices: {}\n",
-        paper.key,
-        paper.title,
-        paper.venue,
-        paper.doi,
+        "{}         {} runs of {} steps, seed {}; choices: {}\n",
+        citation(&specification.paper),
         reproduction.runs,
         reproduction.steps,
         reproduction.seed,
@@ -302,7 +298,7 @@ pub fn alternatives(paper: Paper, reproductions: &[Reproduction]) -> String {
 
 /// The open parameters of a scenario and their alternatives.
 pub fn choices(specification: &Specification) -> String {
-    let mut text = format!("{}  {}\n", specification.paper.key, specification.paper.title);
+    let mut text = citation(&specification.paper);
     for parameter in &specification.parameters {
         let _ = writeln!(text, "\n{}", parameter.name);
         text.push_str(&wrapped(&format!("The paper prints: {}", parameter.printed), "    "));

@@ -1,0 +1,431 @@
+//! Goal: the command line does what its help says, and whatever it is given it answers with a sentence and an exit status.
+//!
+//! Method: the program is run as a reader would run it, with its output in pipes. Kind of evidence: behaviour, by examples, good
+//! and bad; what the figures are worth is the other files' work.
+
+use serde_json::Value;
+use std::io::Read;
+use std::path::PathBuf;
+use std::process::{Command, Output, Stdio};
+
+// What it is
+
+#[test]
+fn help_and_version_are_there() {
+    let help = succeeds(&["--help"]);
+    for word in ["reproduce", "claims", "rule", "choices", "Exit status"] {
+        assert!(help.contains(word), "{word}");
+    }
+    for command in ["reproduce", "claims", "rule", "choices"] {
+        assert!(succeeds(&[command, "--help"]).contains("--json"), "{command}");
+    }
+    assert_eq!(
+        succeeds(&["--version"]),
+        concat!("immaculate ", env!("CARGO_PKG_VERSION"), "\n")
+    );
+    // Nothing asked: the same help, as a complaint.
+    let nothing = run(&[]);
+    assert_eq!(nothing.status.code(), Some(2));
+    assert!(error_of(&nothing).contains("Usage: immaculate"));
+}
+
+// Commands
+
+#[test]
+fn a_rule_is_listed_with_its_proven_degree() {
+    let text = succeeds(&["rule", "cubature-5", "--dimension", "4"]);
+    for part in [
+        "33 points at 33 places, 25 of them",
+        "degree 5, proven",
+        "E x1^6 = 9, where the Gaussian has 15",
+        "√6",
+    ] {
+        assert!(text.contains(part), "{part} in\n{text}");
+    }
+    let printed = json(&["rule", "cubature-5-printed", "-n", "4", "--json"]);
+    assert_eq!(printed["sum_of_weights"], "5/3");
+    assert_eq!(printed["proven_degree"], Value::Null);
+    let unscented = json(&["rule", "unscented", "-n", "4", "--kappa", "-1", "--json"]);
+    assert_eq!(unscented["list"][0]["weight"], "-1/3");
+    assert_eq!(
+        unscented,
+        json(&["rule", "unscented", "-n", "4", "--json"]),
+        "−1 is 3 − n"
+    );
+    let counts = ["cubature-3", "unscented", "cubature-5", "simplex-5", "gauss-hermite-3"]
+        .map(|rule| json(&["rule", rule, "-n", "4", "--json"])["points"].clone());
+    assert_eq!(counts, [8, 9, 33, 31, 81]);
+}
+
+#[test]
+fn choices_lists_what_set_understands() {
+    let text = succeeds(&["choices"]);
+    let listed = json(&["choices", "--json"]);
+    let mut tried = 0;
+    for paper in list(&listed["papers"]) {
+        let key = paper["paper"].as_str().unwrap();
+        assert!(text.contains(key));
+        for parameter in list(&paper["parameters"]) {
+            let name = parameter["name"].as_str().unwrap();
+            for alternative in list(&parameter["alternative"]) {
+                let alternative = alternative["name"].as_str().unwrap();
+                assert!(text.contains(name) && text.contains(alternative));
+                let set = format!("{name}={alternative}");
+                let shown = json(&["reproduce", key, "--runs", "2", "--set", &set, "--json"]);
+                let choices = &shown["papers"][0]["reproduction"]["choices"];
+                assert_eq!(choices[name], alternative, "{set}");
+                tried += 1;
+            }
+        }
+    }
+    assert!(tried > 40, "{tried} alternatives");
+}
+
+#[test]
+fn reproduce_sets_published_and_computed_figures_side_by_side() {
+    let text = succeeds(&["reproduce", "--runs", "5", "--brief"]);
+    for part in [
+        "RMSE_X (m)",
+        "Position ARMSE (m)",
+        "74.3",
+        "5 runs of 199 steps, seed 1",
+        "IMM5thSSRCKF",
+    ] {
+        assert!(text.contains(part), "{part} in\n{text}");
+    }
+    let all = json(&["reproduce", "--runs", "5", "--json"]);
+    let [zhu, liu] = &list(&all["papers"])[..] else {
+        panic!("two papers");
+    };
+    for (paper, key, filters, figures) in [(zhu, "zhu2016", 5, 20), (liu, "liu2017", 4, 8)] {
+        assert_eq!(list(&paper["published_and_computed"]).len(), figures);
+        for figure in list(&paper["published_and_computed"]) {
+            for field in [
+                "published",
+                "computed",
+                "standard_error",
+                "difference_in_standard_errors",
+            ] {
+                assert!(figure[field].is_f64(), "{key}: {field} of {figure}");
+            }
+        }
+        let reproduction = &paper["reproduction"];
+        assert_eq!(reproduction["paper"], key);
+        assert_eq!(reproduction["runs"], 5);
+        assert_eq!(reproduction["seed"], 1);
+        let steps = reproduction["steps"].as_u64().unwrap();
+        assert_eq!(list(&reproduction["times"]).len() as u64, steps);
+        assert_eq!(list(&reproduction["filters"]).len(), filters);
+        for filter in list(&reproduction["filters"]) {
+            assert_eq!(filter["completed_runs"], 5, "{key}: {}", filter["name"]);
+            assert_eq!(list(&filter["mode_probabilities"]).len() as u64, steps);
+            for history in list(&filter["rmse"]) {
+                assert_eq!(list(&history["values"]).len() as u64, steps);
+            }
+        }
+        assert!(!list(&paper["alternatives"]).is_empty(), "every open choice by itself");
+    }
+    let brief = json(&["reproduce", "liu2017", "--runs", "2", "--brief", "--json"]);
+    assert_eq!(list(&brief["papers"]).len(), 1);
+    assert!(list(&brief["papers"][0]["alternatives"]).is_empty());
+}
+
+#[test]
+fn claims_gives_every_claim_a_verdict_and_evidence() {
+    let all = json(&["claims", "--runs", "2", "--json"]);
+    let text = succeeds(&["claims", "--runs", "2"]);
+    for paper in list(&all["papers"]) {
+        assert!(!list(&paper["claims"]).is_empty());
+        for claim in list(&paper["claims"]) {
+            let verdict = claim["verdict"].as_str().unwrap();
+            let known = ["proven", "confirmed", "refuted", "undecided", "not-reproducible"];
+            assert!(known.contains(&verdict), "{verdict}");
+            assert!(text.contains(claim["id"].as_str().unwrap()));
+            assert!(!claim["evidence"].as_str().unwrap().is_empty());
+        }
+    }
+}
+
+#[test]
+fn out_writes_the_files_that_it_names() {
+    let directory = temporary("out").join("made").join("on the way");
+    succeeds(&[
+        "reproduce",
+        "zhu2016",
+        "--runs",
+        "2",
+        "--brief",
+        "--out",
+        directory.to_str().unwrap(),
+    ]);
+    let text = |name: &str| std::fs::read_to_string(directory.join(name)).unwrap();
+    let value: Value = serde_json::from_str(&text("zhu2016.json")).unwrap();
+    assert_eq!(value["reproduction"]["runs"], 2);
+    for (name, head, columns) in [
+        ("zhu2016-errors.csv", "time,filter,quantity,rmse", 4),
+        (
+            "zhu2016-mode-probabilities.csv",
+            "time,filter,mode,probability,truth",
+            5,
+        ),
+    ] {
+        let text = text(name);
+        assert_eq!(text.lines().next(), Some(head));
+        assert!(text.lines().count() > 500, "{name}");
+        for line in text.lines() {
+            assert_eq!(line.split(',').count(), columns, "{name}: {line}");
+        }
+    }
+}
+
+// The same answer to the same question
+
+#[test]
+fn the_same_seed_gives_the_same_figures_and_another_seed_others() {
+    let figures = |seed: &str| {
+        let mut answer = json(&["reproduce", "--runs", "3", "--brief", "--seed", seed, "--json"]);
+        let removed = remove_times(&mut answer);
+        assert_eq!(removed, 9, "one time a filter, and nothing else differs");
+        answer
+    };
+    assert_eq!(figures("5"), figures("5"));
+    assert_ne!(figures("5"), figures("6"));
+    // The greatest seed is a seed.
+    figures("18446744073709551615");
+    let verdicts = |seed: &str| json(&["claims", "--runs", "2", "--seed", seed, "--json"]);
+    assert_eq!(verdicts("5"), verdicts("5"));
+}
+
+// Pipes
+
+#[test]
+fn nothing_but_text_is_written_where_nobody_watches() {
+    for arguments in [
+        &["reproduce", "--runs", "3"][..],
+        &["claims", "--runs", "2"],
+        &["rule", "simplex-5", "-n", "3"],
+        &["choices"],
+    ] {
+        let output = run(arguments);
+        assert!(output.status.success());
+        let text = String::from_utf8(output.stdout.clone()).unwrap();
+        let is_text = |c: char| c == '\n' || !c.is_control();
+        assert!(text.chars().all(is_text), "no colour, no progress bar: {arguments:?}");
+        assert_eq!(error_of(&output), "", "{arguments:?}");
+    }
+}
+
+#[test]
+fn a_reader_that_stops_reading_is_no_error() {
+    for arguments in [
+        &["rule", "cubature-5", "-n", "16", "--json"][..],
+        &["reproduce", "--runs", "2", "--brief"],
+        &["choices"],
+    ] {
+        let mut child = immaculate(arguments)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        // Closed before the program has anything to say.
+        drop(child.stdout.take());
+        let mut complaint = String::new();
+        child.stderr.take().unwrap().read_to_string(&mut complaint).unwrap();
+        assert_eq!(complaint, "", "{arguments:?}");
+        assert!(child.wait().unwrap().success(), "{arguments:?}");
+    }
+}
+
+// What does not exist
+
+#[test]
+fn what_does_not_exist_is_named_beside_what_does() {
+    for (arguments, parts) in [
+        (&["reproduce", "zhu2017"][..], &["`zhu2017`", "zhu2016, liu2017"][..]),
+        (&["claims", "derbez2000"], &["`derbez2000`", "zhu2016, liu2017"]),
+        (&["choices", "x"], &["`x`", "zhu2016, liu2017"]),
+        (
+            &["rule", "simplex", "-n", "4"],
+            &["`simplex`", "cubature-3, unscented, cubature-5, simplex-5"],
+        ),
+        (
+            &["reproduce", "--set", "noise=1"],
+            &["`noise`", "zhu2016 has measurement, ", "liu2017 has "],
+        ),
+        (
+            &["reproduce", "liu2017", "--set", "measurement=as-printed"],
+            &["`measurement`", "liu2017 has "],
+        ),
+        (
+            &["reproduce", "zhu2016", "--set", "measurement=polar"],
+            &[
+                "`measurement` of zhu2016",
+                "`polar`",
+                "as-printed, equal-noise, range-bearing",
+            ],
+        ),
+        (
+            &["reproduce", "--set", "measurement"],
+            &["`measurement`", "parameter=alternative"],
+        ),
+        (&["reproduce", "--set", ""], &["``", "parameter=alternative"]),
+        (
+            &["reproduce", "--set", "measurement="],
+            &["no alternative ``", "as-printed"],
+        ),
+        (&["reproduce", "--runs", "1"], &["'1'", "--runs", "2..=1000000"]),
+        (&["reproduce", "--runs", "many"], &["'many'", "--runs"]),
+        (&["reproduce", "--seed", "-1"], &["'-1'"]),
+        (&["rule", "cubature-5"], &["--dimension"]),
+        (
+            &["rule", "cubature-5", "-n", "0"],
+            &["`cubature-5`", "at least 1, not 0"],
+        ),
+        (
+            &["rule", "simplex-5", "-n", "1"],
+            &["`simplex-5`", "at least 2, not 1", "liu2017 (6)"],
+        ),
+        (&["rule", "cubature-5", "-n", "33"], &["33", "at most 32"]),
+        (&["rule", "gauss-hermite-5", "-n", "32"], &["32", "at most"]),
+        (&["rule", "gauss-hermite-3", "-n", "0"], &["at least 1, not 0"]),
+        (
+            &["rule", "cubature-5", "-n", "4", "--kappa", "1"],
+            &["--kappa", "`unscented`"],
+        ),
+        (
+            &["rule", "unscented", "-n", "4", "--kappa", "1/2"],
+            &["--kappa", "`1/2`"],
+        ),
+        (&["rule", "unscented", "-n", "4", "--beta", "NaN"], &["--beta", "`NaN`"]),
+        (
+            &["rule", "unscented", "-n", "4", "--kappa", "1e999999999"],
+            &["--kappa", "1e999999999"],
+        ),
+        (
+            &["rule", "unscented", "-n", "4", "--kappa", "-4"],
+            &["n + lambda = 0", "positive"],
+        ),
+        (
+            &["rule", "unscented", "-n", "4", "--alpha", "0"],
+            &["n + lambda = 0", "positive"],
+        ),
+        (
+            &["rule", "unscented", "-n", "4", "--kappa", "1e-30"],
+            &["n + lambda", "fewer decimals"],
+        ),
+        (&["prove"], &["'prove'"]),
+        (&["reproduce", "--fast"], &["'--fast'"]),
+    ] {
+        let complaint = refuses(arguments, 2);
+        for part in parts {
+            assert!(complaint.contains(part), "{arguments:?}: {part} in\n{complaint}");
+        }
+    }
+}
+
+#[test]
+fn output_that_cannot_be_written_is_named() {
+    let file = temporary("a file");
+    std::fs::create_dir_all(file.parent().unwrap()).unwrap();
+    std::fs::write(&file, "in the way").unwrap();
+    // A file where a directory should be, and below one.
+    for place in [file.clone(), file.join("below")] {
+        let place = place.to_str().unwrap();
+        let complaint = refuses(&["reproduce", "zhu2016", "--runs", "2", "--brief", "--out", place], 1);
+        assert!(complaint.contains(place), "{complaint}");
+    }
+    // A directory where a file should be.
+    let directory = temporary("a directory");
+    let in_the_way = directory.join("zhu2016-errors.csv");
+    std::fs::create_dir_all(&in_the_way).unwrap();
+    let arguments = [
+        "reproduce",
+        "zhu2016",
+        "--runs",
+        "2",
+        "--brief",
+        "--out",
+        directory.to_str().unwrap(),
+    ];
+    let complaint = refuses(&arguments, 1);
+    assert!(complaint.contains(in_the_way.to_str().unwrap()), "{complaint}");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_an_error() {
+    // Linux has a file that is always full.
+    let full = std::fs::File::create("/dev/full").unwrap();
+    let output = immaculate(&["choices"]).stdout(full).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(error_of(&output).contains("standard output"), "{}", error_of(&output));
+}
+
+// Helpers
+
+fn immaculate(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_immaculate"));
+    command.args(arguments);
+    command
+}
+
+fn run(arguments: &[&str]) -> Output {
+    immaculate(arguments).output().unwrap()
+}
+
+/// What a command that succeeds writes; it complains about nothing.
+fn succeeds(arguments: &[&str]) -> String {
+    let output = run(arguments);
+    assert!(output.status.success(), "{arguments:?}: {}", error_of(&output));
+    assert_eq!(error_of(&output), "", "{arguments:?}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+fn json(arguments: &[&str]) -> Value {
+    serde_json::from_str(&succeeds(arguments)).unwrap()
+}
+
+/// The complaint of a command that fails with this status: it writes nothing else, and it is no panic.
+fn refuses(arguments: &[&str], status: i32) -> String {
+    let output = run(arguments);
+    let complaint = error_of(&output);
+    assert_eq!(output.status.code(), Some(status), "{arguments:?}: {complaint}");
+    assert!(output.stdout.is_empty(), "{arguments:?}");
+    assert!(!complaint.contains("panicked"), "{arguments:?}: {complaint}");
+    let first = complaint.lines().next().unwrap_or_default();
+    assert!(
+        first.starts_with("immaculate: ") || first.starts_with("error: "),
+        "{arguments:?}: {complaint}"
+    );
+    complaint
+}
+
+fn error_of(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+fn list(value: &Value) -> &Vec<Value> {
+    value.as_array().unwrap()
+}
+
+/// A place of this test's own that does not exist yet.
+fn temporary(name: &str) -> PathBuf {
+    let root = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("command_line");
+    let place = root.join(name);
+    // What an earlier run left, if it left anything.
+    let _ = std::fs::remove_dir_all(&place);
+    let _ = std::fs::remove_file(&place);
+    place
+}
+
+/// Takes every time out of an answer and says how many there were.
+fn remove_times(value: &mut Value) -> usize {
+    match value {
+        Value::Object(fields) => {
+            let here = usize::from(fields.remove("microseconds_per_step").is_some());
+            here + fields.values_mut().map(remove_times).sum::<usize>()
+        }
+        Value::Array(values) => values.iter_mut().map(remove_times).sum(),
+        _ => 0,
+    }
+}

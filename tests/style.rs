@@ -1,0 +1,411 @@
+//! Goal: the house style is held by a test and not by memory.
+//!
+//! Method: the tree is read as text. Kind of evidence: style. What cannot be decided by reading lines (whether a name is good, a
+//! sentence true) is not tried. Every exception is on a list with its reason, and an exception that is no longer needed fails.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+/// Files that may be longer than [`LONGEST_FILE`] lines.
+const LONG_FILES: [(&str, &str); 3] = [
+    (
+        "src/paper/zhu2016/claims.rs",
+        "a ledger: one judge a claim, in the paper's order",
+    ),
+    (
+        "src/paper/liu2017/claims.rs",
+        "a ledger: one judge a claim, in the paper's order",
+    ),
+    (
+        "src/paper/result.rs",
+        "the questions to the runs, and the record of their answers, field by field",
+    ),
+];
+const LONGEST_FILE: usize = 500;
+
+/// Functions that may be longer than [`LONGEST_FUNCTION`] lines.
+const LONG_FUNCTIONS: [(&str, &str, &str); 4] = [
+    ("src/imm/equations.rs", "kalman", "a table, one short entry an equation"),
+    (
+        "src/paper/zhu2016/mod.rs",
+        "scenario",
+        "a table, one entry an open parameter",
+    ),
+    (
+        "src/paper/liu2017/mod.rs",
+        "scenario",
+        "a table, one entry an open parameter",
+    ),
+    (
+        "src/paper/liu2017/claims.rs",
+        "table_1_gaps",
+        "one explanation of the table after the other",
+    ),
+];
+const LONGEST_FUNCTION: usize = 60;
+
+/// Where the program may end instead of answering: only where the cause is a defect of the program itself.
+const EXPECTATIONS: [(&str, usize, &str); 6] = [
+    (
+        "src/paper/specification.rs",
+        1,
+        "the files in spec/ are part of the program",
+    ),
+    ("src/paper/monte_carlo.rs", 1, "the scenarios are part of the program"),
+    ("src/paper/scenario.rs", 2, "the papers' rules exist in four dimensions"),
+    ("src/paper/liu2017/mod.rs", 1, "a constant matrix of full rank"),
+    (
+        "src/paper/verdict.rs",
+        1,
+        "claims and judges are both part of the program",
+    ),
+    (
+        "src/statistics/consistency.rs",
+        1,
+        "documented: a number of degrees of freedom is positive",
+    ),
+];
+
+/// The widest line; the formatter breaks code sooner, and leaves comments and long sentences in quotes to the author.
+const WIDEST_LINE: usize = 140;
+
+#[test]
+fn every_file_says_what_its_reader_will_know() {
+    // The map and the command line say what they are instead.
+    let exempt = ["src/lib.rs", "src/main.rs"];
+    for file in rust("src") {
+        let head: Vec<&str> = file.text.lines().take_while(|line| line.starts_with("//!")).collect();
+        assert!(!head.is_empty(), "{} does not start with //!", file.path);
+        let head = head
+            .join(" ")
+            .replace("//!", "")
+            .split_whitespace()
+            .collect::<Vec<_>>()
+            .join(" ");
+        let says = ["file", "folder"].map(|what| format!("After this {what} the reader"));
+        let promises = says.iter().any(|words| head.contains(words));
+        assert_eq!(
+            promises,
+            !exempt.contains(&file.path.as_str()),
+            "{}: After this file the reader …",
+            file.path
+        );
+        let is_folder = file.path.ends_with("/mod.rs");
+        assert!(
+            !promises || head.contains(&says[usize::from(is_folder)]),
+            "{}: file or folder?",
+            file.path
+        );
+    }
+    for file in rust("tests") {
+        assert!(file.text.starts_with("//! "), "{} does not start with //!", file.path);
+    }
+}
+
+#[test]
+fn every_test_file_states_goal_and_method() {
+    for file in rust("tests").iter().filter(|file| file.path.matches('/').count() == 1) {
+        let head: String = file.text.lines().take_while(|line| line.starts_with("//!")).collect();
+        assert!(head.contains("Method: "), "{}: goal and method", file.path);
+    }
+}
+
+#[test]
+fn files_and_functions_are_as_long_as_a_reader_can_hold() {
+    let mut needed = BTreeSet::new();
+    for file in rust("src") {
+        let lines = file.text.lines().count();
+        if lines > LONGEST_FILE {
+            let listed = LONG_FILES.iter().any(|(path, _)| *path == file.path);
+            assert!(listed, "{}: {lines} lines", file.path);
+            needed.insert(file.path.clone());
+        }
+        for (name, lines) in functions(&file.text) {
+            if lines > LONGEST_FUNCTION {
+                let listed = LONG_FUNCTIONS
+                    .iter()
+                    .any(|(path, f, _)| *path == file.path && *f == name);
+                assert!(listed, "{}: {name} has {lines} lines", file.path);
+                needed.insert(format!("{} {name}", file.path));
+            }
+        }
+    }
+    let files = LONG_FILES.iter().map(|(path, _)| (*path).to_owned());
+    let functions = LONG_FUNCTIONS.iter().map(|(path, name, _)| format!("{path} {name}"));
+    for exception in files.chain(functions) {
+        assert!(needed.contains(&exception), "{exception} needs no exception any more");
+    }
+}
+
+#[test]
+fn the_program_does_not_end_by_accident() {
+    for file in rust("src") {
+        let code = without_comments_and_text(&file.text);
+        for word in [
+            ".unwrap()",
+            "panic!",
+            "todo!",
+            "unimplemented!",
+            "unreachable!",
+            "dbg!",
+            "process::exit",
+        ] {
+            assert!(!code.contains(word), "{}: {word}", file.path);
+        }
+        let allowed = EXPECTATIONS
+            .iter()
+            .find(|(path, ..)| *path == file.path)
+            .map_or(0, |entry| entry.1);
+        assert_eq!(code.matches(".expect(").count(), allowed, "{}: .expect(…)", file.path);
+    }
+}
+
+#[test]
+fn equations_call_no_function_that_differs_between_platforms() {
+    // In the equation rooms no type is a double by name: all is generic, so every `.exp()` is that of the number system.
+    let rooms = [
+        "src/matrix.rs",
+        "src/gaussian.rs",
+        "src/rule/",
+        "src/model/",
+        "src/filter/",
+        "src/imm/",
+    ];
+    // Where doubles are doubles, what IEEE 754 does not fix is called by the name of the number system: `Real::ln(&x)`.
+    let of_a_double = [".exp()", ".ln()", ".sin()", ".cos()", ".atan2("];
+    // And these nowhere: no number system has them.
+    let nowhere = [
+        ".powi(",
+        ".powf(",
+        ".mul_add(",
+        ".hypot(",
+        ".tan()",
+        ".cbrt()",
+        ".log10()",
+        ".log2()",
+        ".exp2()",
+        ".ln_1p()",
+        ".exp_m1()",
+        ".sin_cos()",
+        ".asin()",
+        ".acos()",
+        ".atan()",
+    ];
+    for file in rust("src") {
+        let code = without_comments_and_text(&file.text);
+        let is_room = rooms.iter().any(|room| file.path.starts_with(room));
+        let is_number = file.path.starts_with("src/number/");
+        if is_room {
+            let is_word = |c: char| c.is_alphanumeric() || c == '_';
+            let names_a_double = code.split(|c| !is_word(c)).any(|word| ["f64", "f32"].contains(&word));
+            assert!(!names_a_double, "{} names a double", file.path);
+        }
+        for call in of_a_double.iter().filter(|_| !is_room && !is_number) {
+            assert!(!code.contains(call), "{}: {call} of the platform", file.path);
+        }
+        for call in nowhere {
+            assert!(!code.contains(call), "{}: {call}", file.path);
+        }
+    }
+}
+
+#[test]
+fn unicode_is_for_comments_and_text() {
+    for file in rust("src").iter().chain(&rust("tests")) {
+        for (line, text) in (1..).zip(without_comments_and_text(&file.text).lines()) {
+            assert!(text.is_ascii(), "{}:{line}: {text}", file.path);
+        }
+    }
+}
+
+#[test]
+fn lines_have_no_tabs_and_a_width_that_can_be_read() {
+    for file in rust("src").iter().chain(&rust("tests")) {
+        for (number, line) in (1..).zip(file.text.lines()) {
+            let at = format!("{}:{number}", file.path);
+            assert!(!line.contains('\t'), "{at}: a tab");
+            assert_eq!(line, line.trim_end(), "{at}: blanks at the end");
+            let width = line.chars().count();
+            let is_text = line.contains('"') || line.ends_with('\\');
+            assert!(width <= WIDEST_LINE || is_text, "{at}: {width} wide");
+        }
+        assert!(
+            file.text.ends_with('\n') && !file.text.ends_with("\n\n"),
+            "{}: its end",
+            file.path
+        );
+    }
+}
+
+#[test]
+fn the_tree_speaks_of_nothing_outside_itself() {
+    // Put together here, so that this file does not contain them.
+    let words = [
+        ["shar", "ed/"],
+        ["hel", "per"],
+        ["ses", "sion"],
+        ["/wo", "rk/"],
+        ["/tm", "p/"],
+    ]
+    .map(|parts| parts.concat());
+    let mut tree = rust("src");
+    for folder in ["tests", "benches", "spec", "examples", "fixtures"] {
+        tree.extend(files(folder, &|_| true));
+    }
+    for name in ["README.md", "Cargo.toml", "CHANGELOG.md", "CONTRIBUTING.md"] {
+        tree.extend(read(&root().join(name)));
+    }
+    assert!(tree.len() > 60, "the tree was read");
+    for file in tree {
+        for word in &words {
+            assert!(!file.text.contains(word.as_str()), "{}: {word}", file.path);
+        }
+    }
+}
+
+#[test]
+fn code_is_told_from_comments_and_text() {
+    let code = without_comments_and_text(concat!(
+        "let a = \"π // no comment \\\" still text\"; // π\n",
+        "let b: &'static str = r\"π\"; /* π\n π */ let c = 'π'; let d = '\\'';\n",
+    ));
+    assert_eq!(
+        code,
+        "let a = \"\"; \nlet b: &'static str = r\"\";  let c = ' '; let d = ' ';\n"
+    );
+    let text = "impl A {\n    pub fn short() {}\n    fn longer<T>(\n        a: T,\n    ) {\n        a\n    }\n}\n";
+    assert_eq!(functions(text), [("short".to_owned(), 1), ("longer".to_owned(), 5)]);
+}
+
+// How the tree is read
+
+struct File {
+    path: String,
+    text: String,
+}
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn read(path: &Path) -> Option<File> {
+    Some(File {
+        text: std::fs::read_to_string(path).ok()?,
+        path: path.strip_prefix(root()).ok()?.display().to_string().replace('\\', "/"),
+    })
+}
+
+/// The text files of a folder that is there, in the order of their paths.
+fn files(folder: &str, wanted: &dyn Fn(&Path) -> bool) -> Vec<File> {
+    let mut folders = vec![root().join(folder)];
+    let mut paths: Vec<PathBuf> = Vec::new();
+    while let Some(folder) = folders.pop() {
+        let Ok(entries) = std::fs::read_dir(folder) else {
+            continue;
+        };
+        for path in entries.map(|entry| entry.unwrap().path()) {
+            if path.is_dir() {
+                folders.push(path);
+            } else if wanted(&path) {
+                paths.push(path);
+            }
+        }
+    }
+    paths.sort();
+    paths.iter().filter_map(|path| read(path)).collect()
+}
+
+fn rust(folder: &str) -> Vec<File> {
+    files(folder, &|path| {
+        path.extension().is_some_and(|extension| extension == "rs")
+    })
+}
+
+/// The functions of a file with their numbers of lines, from `fn` to the closing brace at the same indentation.
+fn functions(text: &str) -> Vec<(String, usize)> {
+    let lines: Vec<&str> = text.lines().collect();
+    let mut found = Vec::new();
+    for (start, line) in lines.iter().enumerate() {
+        let code = line.trim_start();
+        let indentation = &line[..line.len() - code.len()];
+        let Some(name) = [
+            "fn ",
+            "pub fn ",
+            "pub(super) fn ",
+            "pub(crate) fn ",
+            "const fn ",
+            "pub const fn ",
+        ]
+        .iter()
+        .find_map(|words| code.strip_prefix(words)) else {
+            continue;
+        };
+        let name = &name[..name.find(['(', '<']).unwrap_or(name.len())];
+        let closing = format!("{indentation}}}");
+        let last = lines[start..].iter().position(|line| *line == closing);
+        let is_one_line = code.ends_with(['}', ';']);
+        let length = last.filter(|_| !is_one_line).map_or(1, |last| last + 1);
+        found.push((name.to_owned(), length));
+    }
+    found
+}
+
+/// A file without its comments, and with nothing in its quotes.
+fn without_comments_and_text(text: &str) -> String {
+    let mut code = String::new();
+    let mut rest = text;
+    while let Some(c) = rest.chars().next() {
+        if rest.starts_with("//") {
+            rest = &rest[rest.find('\n').unwrap_or(rest.len())..];
+        } else if rest.starts_with("/*") {
+            rest = &rest[rest.find("*/").map_or(rest.len(), |end| end + 2)..];
+        } else if let Some(raw) = raw_text(rest) {
+            code.push_str("r\"\"");
+            rest = &rest[raw..];
+        } else if c == '"' {
+            code.push_str("\"\"");
+            rest = &rest[quoted(rest)..];
+        } else if let Some(length) = character(rest) {
+            code.push_str("' '");
+            rest = &rest[length..];
+        } else {
+            code.push(c);
+            rest = &rest[c.len_utf8()..];
+        }
+    }
+    code
+}
+
+/// The length of a raw string at the start of a text.
+fn raw_text(text: &str) -> Option<usize> {
+    let hashes = text.strip_prefix('r')?.chars().take_while(|c| *c == '#').count();
+    let body = text[1 + hashes..].strip_prefix('"')?;
+    let end = format!("\"{}", "#".repeat(hashes));
+    Some(text.len() - body.len() + body.find(&end)? + end.len())
+}
+
+/// The length of a string at the start of a text.
+fn quoted(text: &str) -> usize {
+    let mut escaped = false;
+    for (at, c) in text.char_indices().skip(1) {
+        match c {
+            _ if escaped => escaped = false,
+            '\\' => escaped = true,
+            '"' => return at + 1,
+            _ => {}
+        }
+    }
+    text.len()
+}
+
+/// The length of a character in quotes at the start of a text; a lifetime is none.
+fn character(text: &str) -> Option<usize> {
+    let body = text.strip_prefix('\'')?;
+    let first = body.chars().next()?;
+    let inner = if first == '\\' {
+        body[2..].find('\'')? + 2
+    } else {
+        first.len_utf8()
+    };
+    body[inner..].starts_with('\'').then_some(inner + 2)
+}

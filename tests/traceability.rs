@@ -1,0 +1,788 @@
+//! Goal: `spec/` and `src/` are two halves of one specification, and neither says anything that the other does not know.
+//!
+//! Method: both halves are read as they stand, `src/` as text and `spec/` as data, and held against each other in both
+//! directions: numbers, errata, evidence, parameters, constants, claims. Kind of evidence: traceability. It shows that
+//! everything has its place; that what stands there is right is the other files' work.
+
+use immaculate::model::Measurement;
+use immaculate::model::motion::acceleration_input;
+use immaculate::paper::scenario::{Motion, Scenario};
+use immaculate::paper::specification::{Choices, Equation, Specification};
+use immaculate::paper::{Effort, Paper, liu2017, zhu2016};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+// Numbers: spec → src and src → spec
+
+#[test]
+fn every_printed_number_is_realised_by_an_item_of_the_source() {
+    let realised: BTreeSet<Number> = doc_comments().iter().flat_map(|doc| headings(&doc.text)).collect();
+    let missing: Vec<_> = printed_numbers().difference(&realised).cloned().collect();
+    assert!(
+        missing.is_empty(),
+        "in spec/, and after no ` — ` of a doc comment in src/: {missing:?}"
+    );
+}
+
+#[test]
+fn every_number_named_in_the_source_is_a_row_of_the_specification() {
+    let rows = printed_numbers();
+    let mut unknown = Vec::new();
+    for file in sources() {
+        // Doc comments, comments and the equations that errors name.
+        let text = file.text.replace("///", "").replace("//!", "");
+        let named = citations(&text).into_iter();
+        unknown.extend(
+            named
+                .filter(|number| !rows.contains(number))
+                .map(|number| (file.path.clone(), number)),
+        );
+    }
+    assert!(unknown.is_empty(), "in src/, and no row: {unknown:?}");
+}
+
+#[test]
+fn citations_are_read_as_lists_and_ranges() {
+    let read = |text: &str| -> Vec<(String, u32)> { citations(text) };
+    let zhu = |numbers: &[u32]| -> Vec<(String, u32)> { numbers.iter().map(|n| ("zhu2016".to_owned(), *n)).collect() };
+    assert_eq!(read("zhu2016 (54)"), zhu(&[54]));
+    assert_eq!(read("zhu2016 (2)-(4), (28) and (9)"), zhu(&[2, 3, 4, 28]));
+    assert_eq!(read("zhu2016 (2),\n    (3)."), zhu(&[2, 3]));
+    assert_eq!(read("(2), zhu2016, zhu2016 (64"), zhu(&[]));
+    let both = "— zhu2016 (55), liu2017 (12). Then zhu2016 (1) — liu2017 (3): x";
+    assert_eq!(read(both).len(), 4);
+    let realised: Vec<u32> = headings(both).iter().map(|number| number.1).collect();
+    assert_eq!(realised, [55, 12, 3], "(1) stands after no dash");
+}
+
+#[test]
+fn numbers_run_without_gaps_and_names_stand_for_the_rest() {
+    for paper in Paper::ALL {
+        let specification = paper.specification();
+        assert_eq!(specification.paper.key, paper.key());
+        for (index, equation) in (1..).zip(&specification.equations) {
+            assert_eq!(equation.number, Some(index), "{}", paper.key());
+            assert_eq!(equation.name, None);
+        }
+        for equation in &specification.unnumbered {
+            assert_eq!(equation.number, None);
+            let name = equation.name.as_deref().unwrap_or_default();
+            assert!(is_kebab_case(name), "{}: `{name}`", paper.key());
+        }
+    }
+}
+
+// Errata and evidence
+
+#[test]
+fn every_mathematical_erratum_names_a_test_that_exists() {
+    let tests = test_names();
+    let mut missing = Vec::new();
+    for (label, equation) in all_equations() {
+        let Some(erratum) = &equation.erratum else {
+            continue;
+        };
+        match (erratum.kind.as_str(), &erratum.test) {
+            ("mathematical", Some(test)) if tests.contains(test) => {}
+            ("notational", None) => {}
+            other => missing.push((label, other)),
+        }
+    }
+    assert!(missing.is_empty(), "errata without a test: {missing:?}");
+}
+
+#[test]
+fn every_mathematical_erratum_is_evidence_of_the_function_that_corrects_it() {
+    let evidence: BTreeSet<String> = doc_comments().iter().flat_map(|doc| evidence(&doc.text)).collect();
+    for (label, equation) in all_equations() {
+        if let Some(test) = equation.erratum.as_ref().and_then(|e| e.test.as_ref()) {
+            assert!(evidence.contains(test), "{label}: `{test}` in no Evidence");
+        }
+    }
+}
+
+#[test]
+fn every_test_named_as_evidence_exists() {
+    let tests = test_names();
+    let mut missing = Vec::new();
+    for doc in doc_comments() {
+        for name in evidence(&doc.text) {
+            if !tests.contains(&name) {
+                missing.push((doc.path.clone(), name));
+            }
+        }
+    }
+    assert!(missing.is_empty(), "no such test: {missing:#?}");
+}
+
+#[test]
+fn evidence_is_read_to_the_end_of_its_paragraph() {
+    let text = "Why: `not_this`.\n\nEvidence: `one_law` (exact), as [`point`](fn@point),\n`another_law`.\n\n`nor_this`";
+    assert_eq!(evidence(text), ["one_law", "another_law"]);
+}
+
+#[test]
+fn status_kind_and_erratum_agree() {
+    for (label, equation) in all_equations() {
+        let status = equation.status.as_str();
+        assert!(
+            ["as-printed", "corrected", "reconstructed"].contains(&status),
+            "{label}: {status}"
+        );
+        assert_eq!(
+            equation.erratum.is_some(),
+            status == "corrected",
+            "{label}: an erratum, and only then `corrected`"
+        );
+        assert!(!equation.meaning.trim().is_empty(), "{label}");
+        if let Some(erratum) = &equation.erratum {
+            assert!(
+                ["mathematical", "notational"].contains(&erratum.kind.as_str()),
+                "{label}: {}",
+                erratum.kind
+            );
+            assert_ne!(erratum.printed, equation.latex, "{label}: nothing corrected");
+        }
+    }
+}
+
+#[test]
+fn ids_are_unique_and_begin_with_their_paper() {
+    let mut seen = BTreeSet::new();
+    for paper in Paper::ALL {
+        let specification = paper.specification();
+        let equations = specification.equations.iter().chain(&specification.unnumbered);
+        let errata = equations.filter_map(|equation| equation.erratum.as_ref());
+        let claims = specification.claims.iter().map(|claim| &claim.id);
+        for id in errata.map(|erratum| &erratum.id).chain(claims) {
+            assert!(id.starts_with(&format!("{}-", paper.key())), "{id}");
+            assert!(is_kebab_case(id), "{id}");
+            assert!(seen.insert(id.clone()), "{id} twice");
+        }
+        let names = specification.unnumbered.iter().flat_map(|e| &e.name);
+        assert_unique(names.cloned());
+    }
+}
+
+#[test]
+fn latex_braces_and_environments_balance() {
+    for (label, equation) in all_equations() {
+        assert_eq!(unbalanced(&equation.latex), None, "{label}");
+        if let Some(erratum) = &equation.erratum {
+            assert_eq!(unbalanced(&erratum.printed), None, "{label}, as printed");
+        }
+    }
+    for (text, wrong) in [
+        (r"\frac{1}{2", "{"),
+        (r"\left\{x\}", r"\left"),
+        (r"\begin{cases}x\end{bmatrix}", r"\begin{cases}"),
+        (r"x}\{", "}"),
+    ] {
+        assert_eq!(unbalanced(text).as_deref(), Some(wrong), "{text}");
+    }
+}
+
+// The equation rooms: every public function says where it comes from
+
+/// Public functions of the rooms that realise no equation, and why. Everything else has a printed number or a line `Source:`.
+const WITHOUT_SOURCE: [(&str, &[&str]); 4] = [
+    (
+        "their name is their definition",
+        &["is_symmetric", "is_finite", "all_finite", "is_angle", "distance_from"],
+    ),
+    (
+        "they read or count what a rule holds",
+        &[
+            "sum_of_weights",
+            "sum_of_absolute_weights",
+            "effective_points",
+            "distinct_points",
+            "matrix",
+        ],
+    ),
+    (
+        "they make, convert or look up a value",
+        &["zeros", "of_kappa", "from_exact", "exact", "rule", "every_dimension"],
+    ),
+    ("they write for people", &["monomial_name", "figure"]),
+];
+
+#[test]
+fn every_public_equation_names_its_number_or_its_source() {
+    let excused: BTreeSet<&str> = WITHOUT_SOURCE
+        .iter()
+        .flat_map(|(_, names)| names.iter().copied())
+        .collect();
+    let mut used = BTreeSet::new();
+    let mut missing = Vec::new();
+    for file in sources().iter().filter(|file| is_equation_room(&file.path)) {
+        for function in public_functions(&file.text) {
+            let named = !headings(&function.doc).is_empty() || !citations(&first_sentence(&function.doc)).is_empty();
+            let sourced = function.doc.lines().any(|line| line.starts_with("Source:"));
+            if named || sourced {
+                continue;
+            }
+            if excused.contains(function.name.as_str()) {
+                used.insert(function.name.clone());
+            } else {
+                missing.push(format!("{}: {}", file.path, function.name));
+            }
+        }
+    }
+    assert!(missing.is_empty(), "no number and no source: {missing:#?}");
+    for name in excused {
+        assert!(used.contains(name), "`{name}` needs no excuse: take it off the list");
+    }
+}
+
+// Scenarios
+
+#[test]
+fn defaults_are_alternatives_and_names_are_unique() {
+    for paper in Paper::ALL {
+        let parameters = &paper.specification().parameters;
+        assert_unique(parameters.iter().map(|parameter| parameter.name.clone()));
+        for parameter in parameters {
+            let names = || parameter.alternatives.iter().map(|a| a.name.clone());
+            assert!(is_kebab_case(&parameter.name), "{}", parameter.name);
+            assert!(
+                names().any(|name| name == parameter.default),
+                "{}: the default {} is no alternative",
+                parameter.name,
+                parameter.default
+            );
+            assert!(names().count() >= 2, "{} is not open", parameter.name);
+            assert_unique(names());
+        }
+    }
+}
+
+#[test]
+fn every_alternative_changes_the_scenario() {
+    for paper in Paper::ALL {
+        for parameter in &paper.specification().parameters {
+            let mut texts = BTreeMap::new();
+            for alternative in &parameter.alternatives {
+                let choices = Choices::of(&parameter.name, &alternative.name);
+                let text = debug_text(paper, &choices);
+                if alternative.name == parameter.default {
+                    // Otherwise a difference would mean nothing.
+                    assert_eq!(text, debug_text(paper, &Choices::default()));
+                }
+                if let Some(other) = texts.insert(text, &alternative.name) {
+                    panic!(
+                        "{}: {} is the same for {other} and {}",
+                        paper.key(),
+                        parameter.name,
+                        alternative.name
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_constants_of_zhu2016_are_the_printed_ones() {
+    let mut printed = printed_table("zhu2016");
+    assert_turn_rate(&mut printed, zhu2016::TURN_RATE);
+    let scenario = default_scenario(Paper::Zhu2016);
+    let [right, left] = turns(&scenario);
+    let Measurement::Linear(h) = &scenario.measurement else {
+        panic!("(62) is linear");
+    };
+    let g = acceleration_input(&scenario.interval);
+    let mut code = toml::Table::new();
+    let mut put = |key: &str, value: toml::Value| {
+        code.insert(key.to_owned(), value);
+    };
+    put("models", modes(&scenario));
+    put("filters", filters(&scenario, &printed));
+    put("sampling-interval", zhu2016::INTERVAL.into());
+    put("steps", integer(scenario.schedule.len()));
+    put("runs", integer(scenario.runs));
+    put("initial-state", scenario.initial_state.as_slice().to_vec().into());
+    let variances = scenario.initial_covariance.diagonal();
+    put("initial-covariance-diagonal", variances.as_slice().to_vec().into());
+    put(
+        "acceleration-noise-diagonal",
+        vec![zhu2016::ACCELERATION_VARIANCE; 2].into(),
+    );
+    put(
+        "noise-input",
+        rows(g.row_iter().map(|row| row.iter().copied().collect())),
+    );
+    put(
+        "measurement-matrix",
+        rows(h.row_iter().map(|row| row.iter().copied().collect())),
+    );
+    put(
+        "measurement-noise-diagonal",
+        zhu2016::MEASUREMENT_VARIANCES.to_vec().into(),
+    );
+    // "During 20 s ~ 40 s": the step at 40 s is the first that is straight again.
+    put("right-turn-seconds", vec![right.0, right.1 + 1].into());
+    put("left-turn-seconds", vec![left.0, left.1 + 1].into());
+    put("transition", rows(zhu2016::TRANSITION.iter().map(|row| row.to_vec())));
+    assert_eq!(code, printed);
+}
+
+#[test]
+fn the_constants_of_liu2017_are_the_printed_ones() {
+    let mut printed = printed_table("liu2017");
+    assert_turn_rate(&mut printed, liu2017::TURN_RATE);
+    let scenario = default_scenario(Paper::Liu2017);
+    let [right, left] = turns(&scenario);
+    let Measurement::Polar { sensor, .. } = &scenario.measurement else {
+        panic!("(31) is range and bearing");
+    };
+    let mut code = toml::Table::new();
+    let mut put = |key: &str, value: toml::Value| {
+        code.insert(key.to_owned(), value);
+    };
+    put("models", modes(&scenario));
+    put("filters", filters(&scenario, &printed));
+    put("sampling-interval", liu2017::INTERVAL.into());
+    put("first-second", integer(liu2017::FIRST_SECOND));
+    put("last-second", integer(liu2017::LAST_SECOND));
+    put("initial-velocity", liu2017::INITIAL_VELOCITY.to_vec().into());
+    put("initial-x", scenario.initial_state[0].into());
+    put("right-turn-seconds", vec![right.0, right.1].into());
+    put("left-turn-seconds", vec![left.0, left.1].into());
+    put("noise-density-constant-velocity", liu2017::NOISE_DENSITY.into());
+    put("noise-density-turn", liu2017::NOISE_DENSITY.into());
+    put("range-deviation", scenario.measurement_deviations[0].into());
+    put("bearing-deviation", scenario.measurement_deviations[1].into());
+    put("radar", sensor.to_vec().into());
+    put("initial-probabilities", liu2017::INITIAL_PROBABILITIES.to_vec().into());
+    put("transition", rows(liu2017::TRANSITION.iter().map(|row| row.to_vec())));
+    assert_eq!(code, printed);
+}
+
+#[test]
+fn published_tables_are_rectangular_and_name_filters_that_are_run() {
+    for paper in Paper::ALL {
+        let scenario = default_scenario(paper);
+        for table in &paper.specification().tables {
+            for row in &table.rows {
+                assert_eq!(row.values.len(), table.columns.len(), "{}", row.name);
+            }
+            for column in &table.columns {
+                let is_run = |name: &str| name.starts_with(column.as_str());
+                assert!(scenario.contestants.iter().any(|c| is_run(&c.name)), "{column}");
+            }
+        }
+    }
+}
+
+// Claims
+
+#[test]
+fn every_claim_has_exactly_one_judgement() {
+    // Enough runs for a standard error; the verdicts themselves are not looked at.
+    let effort = Effort { runs: Some(3), seed: 1 };
+    for paper in Paper::ALL {
+        let judgements = paper.judge(effort, &|| ()).unwrap();
+        let judged: Vec<&str> = judgements.iter().map(|judgement| judgement.id.as_str()).collect();
+        let claims: Vec<&str> = paper
+            .specification()
+            .claims
+            .iter()
+            .map(|claim| claim.id.as_str())
+            .collect();
+        assert_eq!(judged, claims, "in the order of the file");
+        for judgement in &judgements {
+            assert!(!judgement.evidence.trim().is_empty(), "{}", judgement.id);
+        }
+    }
+}
+
+#[test]
+fn every_name_in_the_notation_exists_in_the_source() {
+    let notation = std::fs::read_to_string(root().join("spec/notation.md")).unwrap();
+    let source: String = sources().iter().map(|file| file.text.as_str()).collect();
+    let words: BTreeSet<&str> = source
+        .split(|c: char| !(c.is_ascii_alphanumeric() || c == '_'))
+        .collect();
+    let names = notation
+        .lines()
+        .filter(|line| line.starts_with('|'))
+        .filter_map(|line| line.split('|').nth(3))
+        .flat_map(backticked);
+    for name in names {
+        assert!(words.contains(name.as_str()), "spec/notation.md: `{name}`");
+    }
+}
+
+// How both halves are read
+
+/// A paper's key and a printed number.
+type Number = (String, u32);
+
+/// A file of `src/`.
+struct Source {
+    path: String,
+    text: String,
+}
+
+/// A run of doc comment lines, without the slashes.
+struct Doc {
+    path: String,
+    text: String,
+}
+
+/// A public function and its doc comment.
+struct Function {
+    name: String,
+    doc: String,
+}
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn keys() -> impl Iterator<Item = &'static str> {
+    Paper::ALL.into_iter().map(Paper::key)
+}
+
+/// All Rust files of a folder, in the order of their paths.
+fn files(folder: &str) -> Vec<Source> {
+    let mut folders = vec![root().join(folder)];
+    let mut paths: Vec<PathBuf> = Vec::new();
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "rs") {
+                paths.push(path);
+            }
+        }
+    }
+    paths.sort();
+    let read = |path: PathBuf| Source {
+        text: std::fs::read_to_string(&path).unwrap(),
+        path: path
+            .strip_prefix(root())
+            .unwrap()
+            .display()
+            .to_string()
+            .replace('\\', "/"),
+    };
+    paths.into_iter().map(read).collect()
+}
+
+/// The source, but for the file that reads the specification: its examples would name numbers that nothing realises.
+fn sources() -> Vec<Source> {
+    let mut sources = files("src");
+    sources.retain(|file| file.path != "src/paper/specification.rs");
+    sources
+}
+
+/// Every doc comment of the source.
+fn doc_comments() -> Vec<Doc> {
+    let mut docs = Vec::new();
+    for file in sources() {
+        let mut text = String::new();
+        for line in file.text.lines().chain([""]) {
+            if let Some(line) = doc_line(line) {
+                text.push_str(line);
+                text.push('\n');
+            } else if !text.is_empty() {
+                docs.push(Doc {
+                    path: file.path.clone(),
+                    text: std::mem::take(&mut text),
+                });
+            }
+        }
+    }
+    docs
+}
+
+/// The text of a doc comment's line.
+fn doc_line(line: &str) -> Option<&str> {
+    let line = line.trim_start();
+    let text = line.strip_prefix("///").or_else(|| line.strip_prefix("//!"))?;
+    Some(text.strip_prefix(' ').unwrap_or(text).trim_end())
+}
+
+/// All numbers in the form `key (1), (3)-(5)`.
+fn citations(text: &str) -> Vec<Number> {
+    let mut numbers = Vec::new();
+    for key in keys() {
+        for (_, rest) in text.match_indices(key).map(|(at, _)| text.split_at(at + key.len())) {
+            if let Some(rest) = rest.strip_prefix(' ') {
+                numbers.extend(number_list(rest).0.into_iter().map(|n| (key.to_owned(), n)));
+            }
+        }
+    }
+    numbers
+}
+
+/// The numbers of a list `(1), (3)-(5)` at the start of a text, and what follows it.
+fn number_list(text: &str) -> (Vec<u32>, &str) {
+    let mut numbers = Vec::new();
+    let mut rest = text;
+    loop {
+        let after_comma = if numbers.is_empty() {
+            Some(rest)
+        } else {
+            rest.strip_prefix(',').map(str::trim_start)
+        };
+        let Some((first, after)) = after_comma.and_then(number_in_parentheses) else {
+            return (numbers, rest);
+        };
+        let range = after.strip_prefix('-').and_then(number_in_parentheses);
+        let (last, after) = range.unwrap_or((first, after));
+        numbers.extend(first..=last);
+        rest = after;
+    }
+}
+
+fn number_in_parentheses(text: &str) -> Option<(u32, &str)> {
+    let (digits, rest) = text.strip_prefix('(')?.split_once(')')?;
+    Some((digits.parse().ok()?, rest))
+}
+
+/// The numbers that a doc comment says it realises: those of the lists after a dash, ` — zhu2016 (55), liu2017 (12)`.
+fn headings(doc: &str) -> Vec<Number> {
+    let mut numbers = Vec::new();
+    for (_, after) in doc.match_indices('—').map(|(at, dash)| doc.split_at(at + dash.len())) {
+        let mut rest = after.trim_start();
+        while let Some(key) = keys().find(|key| rest.starts_with(key)) {
+            let (list, after) = number_list(rest[key.len()..].trim_start());
+            numbers.extend(list.into_iter().map(|n| (key.to_owned(), n)));
+            rest = after.trim_start_matches(',').trim_start();
+        }
+    }
+    numbers
+}
+
+fn first_sentence(doc: &str) -> String {
+    doc.lines()
+        .take_while(|line| !line.is_empty())
+        .collect::<Vec<_>>()
+        .join(" ")
+}
+
+/// The tests that a doc comment names after `Evidence:`, to the end of the paragraph. Links to items are not tests.
+fn evidence(doc: &str) -> Vec<String> {
+    let lines = doc.lines().skip_while(|line| !line.starts_with("Evidence:"));
+    let paragraph: Vec<&str> = lines.take_while(|line| !line.is_empty()).collect();
+    backticked(&paragraph.join(" "))
+}
+
+/// What stands between backticks, but for links.
+fn backticked(text: &str) -> Vec<String> {
+    let parts: Vec<&str> = text.split('`').collect();
+    let pairs = parts.chunks_exact(2).filter(|pair| !pair[0].ends_with('['));
+    pairs.map(|pair| pair[1].to_owned()).collect()
+}
+
+/// The names of all tests.
+fn test_names() -> BTreeSet<String> {
+    let mut names = BTreeSet::new();
+    for file in files("tests") {
+        let mut is_test = false;
+        for line in file.text.lines().map(str::trim) {
+            is_test |= line == "#[test]";
+            if let Some(rest) = line.strip_prefix("fn ").filter(|_| is_test) {
+                let end = rest.find(['(', '<']).unwrap_or(rest.len());
+                names.insert(rest[..end].to_owned());
+                is_test = false;
+            }
+        }
+    }
+    names
+}
+
+/// The folders and files that hold equations.
+fn is_equation_room(path: &str) -> bool {
+    const ROOMS: [&str; 8] = [
+        "src/gaussian.rs",
+        "src/matrix.rs",
+        "src/rule/",
+        "src/model/",
+        "src/filter/",
+        "src/imm/probability.rs",
+        "src/imm/diagonal_mixing.rs",
+        "src/statistics/",
+    ];
+    ROOMS.iter().any(|room| path.starts_with(room))
+}
+
+/// The public functions of a file with their doc comments; attributes may stand between the two.
+fn public_functions(text: &str) -> Vec<Function> {
+    let mut functions = Vec::new();
+    let mut doc = String::new();
+    let mut open_brackets = 0;
+    for line in text.lines() {
+        let code = line.trim_start();
+        if let Some(line) = doc_line(line) {
+            doc.push_str(line);
+            doc.push('\n');
+        } else if code.starts_with("#[") || open_brackets > 0 {
+            open_brackets += code.matches('[').count();
+            open_brackets -= code.matches(']').count();
+        } else {
+            if let Some(rest) = code.strip_prefix("pub fn ") {
+                let end = rest.find(['(', '<']).unwrap_or(rest.len());
+                functions.push(Function {
+                    name: rest[..end].to_owned(),
+                    doc: doc.clone(),
+                });
+            }
+            doc.clear();
+        }
+    }
+    functions
+}
+
+fn printed_numbers() -> BTreeSet<Number> {
+    let of = |paper: Paper| {
+        let numbers = paper.specification().equations.iter().filter_map(|e| e.number);
+        numbers.map(move |number| (paper.key().to_owned(), number))
+    };
+    Paper::ALL.into_iter().flat_map(of).collect()
+}
+
+/// Every equation with a label for messages.
+fn all_equations() -> Vec<(String, &'static Equation)> {
+    let of = |specification: &'static Specification| {
+        let equations = specification.equations.iter().chain(&specification.unnumbered);
+        equations.map(|equation| {
+            let number = equation.number.map(|number| format!("({number})"));
+            let name = number.or_else(|| equation.name.clone()).unwrap_or_default();
+            (format!("{} {name}", specification.paper.key), equation)
+        })
+    };
+    Paper::ALL.into_iter().map(Paper::specification).flat_map(of).collect()
+}
+
+/// The first brace, `\left`/`\right` or environment without its partner.
+fn unbalanced(latex: &str) -> Option<String> {
+    let mut open: Vec<String> = Vec::new();
+    let close = |opening: String, closing: &str, open: &mut Vec<String>| {
+        (open.pop().as_ref() != Some(&opening)).then(|| closing.to_owned())
+    };
+    let mut rest = latex;
+    while let Some(at) = rest.find(['{', '}', '\\']) {
+        rest = &rest[at..];
+        let command: String = match rest.strip_prefix('\\') {
+            Some(name) => {
+                let letters = name.chars().take_while(char::is_ascii_alphabetic).count();
+                rest[..=letters.max(1)].to_owned()
+            }
+            None => rest[..1].to_owned(),
+        };
+        rest = &rest[command.len()..];
+        let argument = || format!("{{{}}}", rest.trim_start_matches('{').split('}').next().unwrap_or(""));
+        let wrong = match command.as_str() {
+            "{" | r"\left" => {
+                open.push(command);
+                None
+            }
+            r"\begin" => {
+                open.push(format!("{command}{}", argument()));
+                None
+            }
+            "}" => close("{".to_owned(), "}", &mut open),
+            r"\right" => close(r"\left".to_owned(), r"\right", &mut open),
+            r"\end" => {
+                let expected = open.pop();
+                (expected.as_deref() != Some(&format!(r"\begin{}", argument()))).then(|| expected.unwrap_or(command))
+            }
+            _ => None,
+        };
+        if wrong.is_some() {
+            return wrong;
+        }
+    }
+    open.pop()
+}
+
+fn is_kebab_case(name: &str) -> bool {
+    !name.is_empty()
+        && name
+            .split('-')
+            .all(|word| !word.is_empty() && word.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit()))
+}
+
+fn assert_unique(names: impl Iterator<Item = String>) {
+    let mut seen = BTreeSet::new();
+    for name in names {
+        assert!(seen.insert(name.clone()), "{name} twice");
+    }
+}
+
+fn default_scenario(paper: Paper) -> Scenario {
+    paper.scenario(&Choices::default()).unwrap()
+}
+
+/// Everything in a scenario but the names of its choices.
+fn debug_text(paper: Paper, choices: &Choices) -> String {
+    let mut scenario = paper.scenario(choices).unwrap();
+    scenario.choices = Choices::default();
+    format!("{scenario:?}")
+}
+
+/// The table `[printed]` of a paper's scenario.
+fn printed_table(paper: &str) -> toml::Table {
+    let path = root().join("spec").join(paper).join("scenario.toml");
+    let file: toml::Table = std::fs::read_to_string(path).unwrap().parse().unwrap();
+    file["printed"].as_table().unwrap().clone()
+}
+
+/// The turn rate is printed in degrees and kept in radians a second; it is taken off the table.
+fn assert_turn_rate(printed: &mut toml::Table, rate: f64) {
+    let degrees = printed.remove("turn-rate-degrees").unwrap().as_float().unwrap();
+    // The same two operations as in the constant, so the same double.
+    assert_eq!((degrees * std::f64::consts::PI / 180.0).to_bits(), rate.to_bits());
+}
+
+/// The first and the last second of the right and of the left turn.
+fn turns(scenario: &Scenario) -> [(i64, i64); 2] {
+    [Motion::RightTurn, Motion::LeftTurn].map(|turn| {
+        let steps = || (0..scenario.schedule.len()).filter(|&k| scenario.schedule[k] == turn);
+        let (first, last) = (steps().min().unwrap(), steps().max().unwrap());
+        assert_eq!(steps().count(), last - first + 1, "one turn to each side");
+        let second = |k: usize| scenario.time(k).to_string().parse().unwrap();
+        (second(first), second(last))
+    })
+}
+
+fn modes(scenario: &Scenario) -> toml::Value {
+    let modes = scenario.contestants[0].problem.modes.iter();
+    modes.map(|mode| mode.name.clone()).collect::<Vec<_>>().into()
+}
+
+/// The printed name of each contestant; a stand-in says so after it.
+fn filters(scenario: &Scenario, printed: &toml::Table) -> toml::Value {
+    let known: Vec<&str> = printed["filters"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter_map(|name| name.as_str())
+        .collect();
+    let contestants = scenario.contestants.iter();
+    contestants
+        .map(|contestant| {
+            let stands_in_for = |name: &&str| contestant.name == format!("{name} (stand-in)");
+            known
+                .iter()
+                .copied()
+                .find(stands_in_for)
+                .unwrap_or(&contestant.name)
+                .to_owned()
+        })
+        .collect::<Vec<_>>()
+        .into()
+}
+
+fn rows(rows: impl Iterator<Item = Vec<f64>>) -> toml::Value {
+    rows.map(toml::Value::from).collect::<Vec<_>>().into()
+}
+
+fn integer(value: usize) -> toml::Value {
+    i64::try_from(value).unwrap().into()
+}
