@@ -55,7 +55,7 @@ struct Reproduce {
     /// Leave out the runs of every open choice by itself
     #[arg(long)]
     brief: bool,
-    /// Write the results, errors over time and mode probabilities as files to this directory
+    /// Write the results as JSON, and errors and mode probabilities over time as CSV and SVG, to this directory
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Print JSON instead of tables
@@ -262,7 +262,12 @@ fn check_that_some_paper_has(papers: &[Paper], choices: &Choices) -> Result<(), 
     Ok(())
 }
 
-/// The files of `reproduce --out`: everything as JSON, errors over time and mode probabilities as CSV.
+/// A figure, or why it could not be drawn.
+fn figure_of(drawn: Result<String, report::figure::NotDrawn>) -> Result<String, Refusal> {
+    drawn.map_err(|error| Refusal::Output(error.to_string()))
+}
+
+/// The files of `reproduce --out`: everything as JSON, errors over time and mode probabilities as CSV and as figures.
 fn write_files(
     directory: &Path,
     reproduction: &immaculate::paper::result::Reproduction,
@@ -278,6 +283,14 @@ fn write_files(
         (
             format!("{paper}-mode-probabilities.csv"),
             report::reproduction::mode_probabilities_csv(reproduction),
+        ),
+        (
+            format!("{paper}-errors.svg"),
+            figure_of(report::figure::errors(reproduction))?,
+        ),
+        (
+            format!("{paper}-mode-probabilities.svg"),
+            figure_of(report::figure::mode_probabilities(reproduction))?,
         ),
     ];
     for (name, content) in files {

@@ -1,9 +1,10 @@
-//! What is printed: tables for people.
+//! What is printed: tables and figures for people.
 //!
 //! After this folder the reader knows how each command's answer looks. The same answers are written as JSON by serialising the values
 //! themselves; nothing is computed here.
 
 pub mod claims;
+pub mod figure;
 pub mod reproduction;
 pub mod rule;
 

@@ -159,7 +159,8 @@ pub fn axis_weight<T: Field>(n: &T) -> T {
 /// Why: Stroud's weight 1/(n(n + 2)) on the unit sphere, times n/(n + 2) of the radial rule.
 ///
 /// Errata: the paper prints 2/(n + 2)², with which the weights sum to (3n² + 2n + 4)/(n + 2)², that is 5/3 at n = 4, and a
-/// filter diverges at its first step; see [`printed`](super::printed::diagonal_weight).
+/// filter of the paper's scenario is off by a hundred metres after one step and has no covariance after two; see
+/// [`printed`](super::printed::diagonal_weight).
 ///
 /// Evidence: as [`fifth_degree`], `printed_fifth_degree_weight_breaks_the_zeroth_moment` (exact).
 pub fn diagonal_weight<T: Field>(n: &T) -> T {
