@@ -176,6 +176,15 @@ fn out_writes_the_files_that_it_names() {
             assert_eq!(line.split(',').count(), columns, "{name}: {line}");
         }
     }
+    for name in ["zhu2016-errors.svg", "zhu2016-mode-probabilities.svg"] {
+        let figure = text(name);
+        assert!(
+            figure.starts_with("<svg") && figure.trim_end().ends_with("</svg>"),
+            "{name}"
+        );
+        assert!(figure.contains("IMM5CKF") && figure.contains("time (s)"), "{name}");
+        assert!(!figure.contains("NaN"), "{name}");
+    }
 }
 
 // The same answer to the same question

@@ -6,6 +6,8 @@ use super::Effort;
 use super::monte_carlo::{Progress, Run, run};
 use super::result::Comparison;
 use super::scenario::Scenario;
+use crate::statistics::estimate::figure;
+use std::fmt::Write;
 
 /// A scenario and its runs.
 #[derive(Debug, Clone)]
@@ -34,5 +36,26 @@ impl Experiment {
     /// The number of runs in which a contestant could not compute a step.
     pub fn failures(&self, contestant: usize) -> usize {
         self.runs.iter().filter(|run| run[contestant].failure.is_some()).count()
+    }
+
+    /// Whether no run fails and no position error of any filter reaches a limit, in metres, with the figures in words.
+    pub fn stays_within(&self, limit: f64) -> (bool, String) {
+        let comparison = self.comparison();
+        let mut bounded = true;
+        let mut words = String::from("Mean NEES (4 expected) and greatest position error of any run:");
+        for (c, contestant) in self.scenario.contestants.iter().enumerate() {
+            let (nees, _) = comparison.consistency(c);
+            let greatest = comparison.greatest_position_error(c);
+            bounded &= self.failures(c) == 0 && greatest < limit;
+            let (name, nees, greatest) = (&contestant.name, figure(nees.value), figure(greatest));
+            let _ = write!(words, " {name} {nees}, {greatest} m;");
+        }
+        let verdict = if bounded {
+            "no run fails and none reaches"
+        } else {
+            "a run fails or reaches"
+        };
+        let _ = write!(words, " {verdict} {} m.", figure(limit));
+        (bounded, words)
     }
 }

@@ -15,7 +15,9 @@ use crate::paper::monte_carlo::{Generator, Progress, run, track};
 use crate::paper::result::Quantity;
 use crate::paper::scenario::{Contestant, Draw, Motion, Scenario};
 use crate::paper::specification::{Choices, InvalidChoice, Specification, liu2017 as specification};
-use crate::paper::verdict::{Judgement, RELEVANT, Verdict, all_of, better_by_a_thousandth, in_words, proven_if};
+use crate::paper::verdict::{
+    Judgement, RELEVANT, Verdict, all_of, better_by_a_thousandth, confirmed_if, in_words, proven_if,
+};
 use crate::rule::moment::{exactness, gaussian_moment, rule_moment};
 use crate::rule::sphere::{every_dimension, on_simplex};
 use crate::rule::{RuleName, fifth_degree, simplex};
@@ -130,7 +132,7 @@ fn quicker_switching(s: &Specification, printed: &Experiment) -> Judgement {
         );
     }
     end_sentence(&mut evidence);
-    let verdict = if quicker { Verdict::Confirmed } else { Verdict::Refuted };
+    let verdict = confirmed_if(quicker);
     s.judgement("liu2017-quicker-switching", verdict, evidence)
 }
 
@@ -156,34 +158,14 @@ fn fifth_degree_switching(s: &Specification, printed: &Experiment) -> Judgement 
         figure(across),
         if faster { "" } else { "not " },
     );
-    let verdict = if faster { Verdict::Confirmed } else { Verdict::Refuted };
+    let verdict = confirmed_if(faster);
     s.judgement("liu2017-fifth-degree-switching", verdict, evidence)
 }
 
 fn no_divergence(s: &Specification, printed: &Experiment) -> Judgement {
-    let comparison = printed.comparison();
-    let mut bounded = true;
-    let mut evidence = String::from("Mean NEES (4 expected) and greatest position error of any run:");
-    for (c, contestant) in printed.scenario.contestants.iter().enumerate() {
-        let (nees, _) = comparison.consistency(c);
-        let greatest = comparison.greatest_position_error(c);
-        // Diverged: further away than ten times the widest deviation of a measured position, 39.4 km · 7 mrad.
-        bounded &= printed.failures(c) == 0 && greatest < 10.0 * 39_400.0 * BEARING_DEVIATION;
-        let _ = write!(
-            evidence,
-            " {} {}, {} m;",
-            contestant.name,
-            figure(nees.value),
-            figure(greatest)
-        );
-    }
-    evidence.push_str(if bounded {
-        " no run fails and no error passes ten deviations of a measured position."
-    } else {
-        " a run fails, or an error passes ten deviations of a measured position."
-    });
-    let verdict = if bounded { Verdict::Confirmed } else { Verdict::Refuted };
-    s.judgement("liu2017-no-divergence", verdict, evidence)
+    // Diverged: further away than ten times the widest deviation of a measured position, 39.4 km · 7 mrad.
+    let (bounded, evidence) = printed.stays_within(10.0 * 39_400.0 * BEARING_DEVIATION);
+    s.judgement("liu2017-no-divergence", confirmed_if(bounded), evidence)
 }
 
 /// The numbers of points of the four rules in four dimensions, in the order of the table.
@@ -421,7 +403,7 @@ fn constant_velocity(s: &Specification, printed: &Experiment) -> Judgement {
     });
     let (_, mut evidence) = better_than_others(printed, &[Quantity::Position], &straight);
     end_sentence(&mut evidence);
-    let verdict = if same { Verdict::Confirmed } else { Verdict::Refuted };
+    let verdict = confirmed_if(same);
     let which = if same {
         "this sentence, not the one before it"
     } else {

@@ -341,28 +341,8 @@ fn equal_weights(s: &Specification) -> Judgement {
 }
 
 fn no_divergence(s: &Specification, printed: &Experiment) -> Judgement {
-    let comparison = printed.comparison();
-    let mut evidence = String::from("Mean NEES (4 expected) and greatest position error of any run:");
-    let mut bounded = true;
-    for (c, contestant) in printed.scenario.contestants.iter().enumerate() {
-        let (nees, _) = comparison.consistency(c);
-        let greatest = comparison.greatest_position_error(c);
-        let failed = printed.failures(c);
-        // Diverged: further away than ten times the deviation with which a run starts, √1000 m.
-        bounded &= failed == 0 && greatest < 10.0 * 1000_f64.sqrt();
-        let _ = write!(
-            evidence,
-            " {} {}, {} m;",
-            contestant.name,
-            figure(nees.value),
-            figure(greatest)
-        );
-    }
-    evidence.push_str(if bounded {
-        " no run fails and no error comes near ten times the deviation at the start, 316 m."
-    } else {
-        " a run fails or an error passes ten times the deviation at the start, 316 m."
-    });
+    // Diverged: further away than ten times the deviation with which a run starts, √1000 m.
+    let (bounded, evidence) = printed.stays_within(10.0 * 1000_f64.sqrt());
     s.judgement("zhu2016-no-divergence", confirmed_if(bounded), evidence)
 }
 
