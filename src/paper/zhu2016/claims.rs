@@ -414,9 +414,12 @@ fn columns_differ(s: &Specification, printed: &Experiment) -> Judgement {
 
     let comparison = printed.comparison();
     let mut evidence = format!(
-        "Symbolic, for every n: the three rules have the degrees {degrees:?}, and a rule of degree two or more is the Kalman filter on \
+        "Symbolic, for every n ≥ 2: the three rules have the degrees {}, and a rule of degree two or more is the Kalman filter on \
          linear models, so the columns must be equal. One and the same filter, run twice without pairing, differs \
-         from itself by a standard deviation of"
+         from itself by a standard deviation of",
+        degrees
+            .map(|degree| degree.map_or("none".to_owned(), |d| d.to_string()))
+            .join(", "),
     );
     let mut beyond_chance = 0;
     for quantity in COMPONENTS {
