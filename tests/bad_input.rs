@@ -505,6 +505,23 @@ fn a_measurement_that_no_mode_can_explain_is_refused() {
 }
 
 #[test]
+fn an_estimate_that_overflows_is_an_error_even_without_a_detection() {
+    // Each prediction multiplies the covariances by 10²⁰⁰: the second one is beyond the doubles.
+    let mut scene = linear_scene();
+    for mode in &mut scene.problem.modes {
+        mode.transition *= 1e100;
+    }
+    let mut filter = scene.filter().unwrap();
+    assert!(filter.step(None).is_ok());
+    let failure = filter.step(None).unwrap_err();
+    assert_eq!(
+        failure.to_string(),
+        "step 2, mode `all`, zhu2016 (60): the combined estimate has an entry that is not finite",
+    );
+    assert_eq!(filter.current().step, 1);
+}
+
+#[test]
 fn a_covariance_that_stops_being_positive_definite_is_named() {
     // A problem that is checked starts from covariances; an exchanged equation can give something else.
     let mut scene = linear_scene_with("cubature-5");
@@ -877,6 +894,7 @@ fn cause_test(cause: &Cause) -> &'static str {
         Cause::NotPositiveDefinite { .. } => "a_covariance_that_stops_being_positive_definite_is_named",
         Cause::MeasurementNotFinite => "a_measurement_is_finite",
         Cause::BearingOutOfRange { .. } => "a_bearing_in_degrees_is_refused",
+        Cause::EstimateNotFinite => "an_estimate_that_overflows_is_an_error_even_without_a_detection",
         Cause::NoEvidence => "a_measurement_that_no_mode_can_explain_is_refused",
     }
 }

@@ -43,6 +43,9 @@ pub enum Cause {
         /// The bearing.
         bearing: String,
     },
+    /// The combined estimate has an entry that is not finite: the problem's numbers are beyond the number system.
+    #[error("the combined estimate has an entry that is not finite")]
+    EstimateNotFinite,
     /// The likelihood of the measurement is beyond the number system.
     #[error("the log-likelihood of the measurement under all modes together is not finite")]
     NoEvidence,
@@ -166,7 +169,16 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
             now.mode_probabilities.clone_from(&now.predicted_mode_probabilities);
         }
         self.combine();
-        Ok(())
+        let combined = &self.now.combined;
+        if all_finite(&combined.mean) && all_finite(&combined.covariance) {
+            return Ok(());
+        }
+        Err(Failure {
+            step: self.now.step,
+            mode: "all".into(),
+            equation: "zhu2016 (60)",
+            cause: Cause::EstimateNotFinite,
+        })
     }
 
     /// Mode probabilities along the chain, and the estimates mixed accordingly.
