@@ -352,8 +352,7 @@ fn integral<const M: usize>(root: &SMatrix<f64, M, M>, log_density: impl Fn(&SVe
 /// Two numbers agree but for rounding: a thousand roundings, which is more than any of the sums here has terms that count (a term
 /// e^(−q/2) adds q/2 roundings of its argument, but is as much smaller).
 fn assert_relative(value: f64, expected: f64) {
-    let allowed = 1000.0 * ROUNDOFF * expected.abs();
-    assert!((value - expected).abs() <= allowed, "{value} is not {expected}");
+    approx::assert_relative_eq!(value, expected, max_relative = 1000.0 * ROUNDOFF, epsilon = 0.0);
     // The comparison can fail: an exact zero is never expected here.
     assert!(!expected.is_zero());
 }
