@@ -111,6 +111,7 @@ pub fn text(paper: Paper, reproduction: &Reproduction) -> String {
         if !comparisons.is_empty() {
             let _ = writeln!(text, "\nTable {}. {}", table.number, table.caption);
             let _ = writeln!(text, "{}", errors(&comparisons));
+            text.push_str(DIFFERENCE_NOTE);
         }
     }
     let _ = writeln!(text, "\nPaired differences: the same truth and noise for both filters");
@@ -123,6 +124,11 @@ pub fn text(paper: Paper, reproduction: &Reproduction) -> String {
     text.push_str(&failures(reproduction));
     text
 }
+
+const DIFFERENCE_NOTE: &str = "\
+Difference: computed minus published, in standard errors of the computed figure. The published one has its own, about as
+large, so that up to some 4 the two agree.
+";
 
 const CONSISTENCY_NOTE: &str = "\
 NEES compares errors with the filter's own covariance (4 if they match, more if it is over-confident), NIS innovations
