@@ -32,6 +32,14 @@ impl std::fmt::Display for WrongMoment {
 }
 
 /// The name of a monomial under an expectation: `E x1^2 x3`, or `E 1`.
+///
+/// # Examples
+///
+/// ```
+/// use immaculate::rule::moment::monomial_name;
+/// assert_eq!(monomial_name(&[2, 0, 1]), "E x1^2 x3");
+/// assert_eq!(monomial_name(&[0, 0]), "E 1");
+/// ```
 pub fn monomial_name(exponents: &[usize]) -> String {
     let factors: Vec<String> = exponents
         .iter()
