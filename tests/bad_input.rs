@@ -140,11 +140,11 @@ fn every_number_is_finite() {
         ),
         (
             |scene| scene.problem.modes[1].transition[(3, 1)] = f64::INFINITY,
-            "`modes[left turn].F` has an entry that is not finite (liu2017 (26))",
+            "`modes[1].F` has an entry that is not finite (liu2017 (26))",
         ),
         (
             |scene| scene.problem.modes[2].noise[(0, 0)] = f64::NAN,
-            "`modes[right turn].Q` has an entry that is not finite (liu2017 (17))",
+            "`modes[2].Q` has an entry that is not finite (liu2017 (17))",
         ),
         (
             |scene| scene.problem.measurement_noise[(1, 1)] = f64::INFINITY,
@@ -152,11 +152,11 @@ fn every_number_is_finite() {
         ),
         (
             |scene| scene.initial.modes[0].mean[2] = f64::NEG_INFINITY,
-            "`initial.modes[constant velocity].mean` has an entry that is not finite (zhu2016 (55))",
+            "`initial.modes[0].mean` has an entry that is not finite (zhu2016 (55))",
         ),
         (
             |scene| scene.initial.modes[2].covariance[(3, 0)] = f64::NAN,
-            "`initial.modes[right turn].covariance` has an entry that is not finite (zhu2016 (56))",
+            "`initial.modes[2].covariance` has an entry that is not finite (zhu2016 (56))",
         ),
         (
             |scene| scene.initial.mode_probabilities[0] = f64::NAN,
@@ -186,7 +186,7 @@ fn covariances_are_symmetric_to_the_last_bit() {
     let spoils: [(Spoil, &str); 3] = [
         (
             |scene| scene.problem.modes[0].noise[(1, 0)] = 0.5_f64.next_up(),
-            "`modes[constant velocity].Q` is not symmetric (liu2017 (17))",
+            "`modes[0].Q` is not symmetric (liu2017 (17))",
         ),
         (
             |scene| scene.problem.measurement_noise[(0, 1)] = f64::MIN_POSITIVE,
@@ -194,7 +194,7 @@ fn covariances_are_symmetric_to_the_last_bit() {
         ),
         (
             |scene| scene.initial.modes[1].covariance[(0, 2)] += 1.0,
-            "`initial.modes[left turn].covariance` is not symmetric (zhu2016 (56))",
+            "`initial.modes[1].covariance` is not symmetric (zhu2016 (56))",
         ),
     ];
     assert_sentences(linear_scene, &spoils);
@@ -206,7 +206,7 @@ fn covariances_are_positive_definite_and_process_noises_semidefinite() {
     let spoils: [(Spoil, &str); 7] = [
         (
             |scene| scene.problem.modes[1].noise[(2, 2)] = -1.0,
-            "`modes[left turn].Q` is not positive semidefinite (liu2017 (17))",
+            "`modes[1].Q` is not positive semidefinite (liu2017 (17))",
         ),
         (
             // A negative variance and nothing else.
@@ -214,7 +214,7 @@ fn covariances_are_positive_definite_and_process_noises_semidefinite() {
                 scene.problem.modes[1].noise.fill(0.0);
                 scene.problem.modes[1].noise[(2, 2)] = -1.0;
             },
-            "`modes[left turn].Q` is not positive semidefinite (liu2017 (17))",
+            "`modes[1].Q` is not positive semidefinite (liu2017 (17))",
         ),
         (
             // A covariance without variances.
@@ -223,14 +223,14 @@ fn covariances_are_positive_definite_and_process_noises_semidefinite() {
                 scene.problem.modes[1].noise[(0, 2)] = 1.0;
                 scene.problem.modes[1].noise[(2, 0)] = 1.0;
             },
-            "`modes[left turn].Q` is not positive semidefinite (liu2017 (17))",
+            "`modes[1].Q` is not positive semidefinite (liu2017 (17))",
         ),
         (
             |scene| {
                 scene.problem.modes[1].noise[(0, 2)] = 5.0;
                 scene.problem.modes[1].noise[(2, 0)] = 5.0;
             },
-            "`modes[left turn].Q` is not positive semidefinite (liu2017 (17))",
+            "`modes[1].Q` is not positive semidefinite (liu2017 (17))",
         ),
         (
             |scene| scene.problem.measurement_noise[(1, 1)] = 0.0,
@@ -242,11 +242,11 @@ fn covariances_are_positive_definite_and_process_noises_semidefinite() {
                 scene.initial.modes[2].covariance[(0, 1)] = 5000.0;
                 scene.initial.modes[2].covariance[(1, 0)] = 5000.0;
             },
-            "`initial.modes[right turn].covariance` is not positive definite (zhu2016 (56))",
+            "`initial.modes[2].covariance` is not positive definite (zhu2016 (56))",
         ),
         (
             |scene| scene.initial.modes[0].covariance.fill(0.0),
-            "`initial.modes[constant velocity].covariance` is not positive definite (zhu2016 (56))",
+            "`initial.modes[0].covariance` is not positive definite (zhu2016 (56))",
         ),
     ];
     assert_sentences(linear_scene, &spoils);

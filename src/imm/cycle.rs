@@ -1,13 +1,27 @@
 //! The wiring: runs a table of equations in the papers' order, for every table the same.
 //!
-//! After this file the reader knows the cycle: what is computed before what, what happens without a detection, and how a step that
-//! cannot be computed is reported.
+//! After this file the reader knows the cycle: what is computed before what, what happens without a detection, how a step that
+//! cannot be computed is reported, and how an [`Observer`] sees every value as soon as it is there.
 
+use super::quantity::Quantity;
 use super::{Equations, Initial, InvalidProblem, Problem, Step};
 use crate::matrix::{NotPositiveDefinite, all_finite, is_finite};
 use crate::model::Measurement;
 use crate::number::Real;
 use nalgebra::SVector;
+
+/// Is told of every traced value of a step, in the order in which they are computed, and may put others in their place: what
+/// follows is then computed from these.
+///
+/// The filter that nobody observes has the observer `()`, which does nothing and costs nothing.
+pub trait Observer<T, const N: usize, const M: usize> {
+    /// The quantity of mode j (0 for a quantity of all modes together) has just been computed and stands in the record.
+    fn computed(&mut self, quantity: Quantity, j: usize, now: &mut Step<T, N, M>);
+}
+
+impl<T, const N: usize, const M: usize> Observer<T, N, M> for () {
+    fn computed(&mut self, _: Quantity, _: usize, _: &mut Step<T, N, M>) {}
+}
 
 /// A step that could not be computed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -104,18 +118,23 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
         if !equations.draws_points && !matches!(problem.measurement, Measurement::Linear(_)) {
             return Err(InvalidProblem::NotLinear);
         }
+        Ok(Self::unchecked(problem, equations, initial))
+    }
+
+    /// A filter at step 0 whose problem may be wrong on purpose: what a variant of the filter is run with.
+    pub(crate) fn unchecked(problem: Problem<T, N, M>, equations: Equations<T, N, M>, initial: &Initial<T, N>) -> Self {
         let points = problem.rule.as_ref().map_or(0, |rule| rule.points.len());
         let mut now = Step::zeros(problem.modes.len(), points);
         now.updated.clone_from(&initial.modes);
         now.mode_probabilities.clone_from(&initial.mode_probabilities);
         now.combined.mean = (equations.combined_mean)(&problem, &now, &now);
         now.combined.covariance = (equations.combined_covariance)(&problem, &now, &now);
-        Ok(Self {
+        Self {
             previous: now.clone(),
             problem,
             equations,
             now,
-        })
+        }
     }
 
     /// The last step that was computed; step 0 is the initial estimate.
@@ -134,8 +153,21 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
     ///
     /// [`Failure`] with step, mode and equation when a value cannot be computed; the filter is then still at the step before.
     pub fn step(&mut self, measurement: Option<&SVector<T, M>>) -> Result<&Step<T, N, M>, Failure> {
+        self.step_observed(measurement, &mut ())
+    }
+
+    /// As [`Imm::step`], with an observer of every value.
+    ///
+    /// # Errors
+    ///
+    /// As [`Imm::step`].
+    pub fn step_observed(
+        &mut self,
+        measurement: Option<&SVector<T, M>>,
+        observer: &mut impl Observer<T, N, M>,
+    ) -> Result<&Step<T, N, M>, Failure> {
         std::mem::swap(&mut self.previous, &mut self.now);
-        match self.advance(measurement) {
+        match self.advance(measurement, observer) {
             Ok(()) => Ok(&self.now),
             Err(failure) => {
                 std::mem::swap(&mut self.previous, &mut self.now);
@@ -145,30 +177,30 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
     }
 
     /// Fills in the record `now` from the record `previous`.
-    fn advance(&mut self, measurement: Option<&SVector<T, M>>) -> Result<(), Failure> {
+    fn advance(
+        &mut self,
+        measurement: Option<&SVector<T, M>>,
+        observer: &mut impl Observer<T, N, M>,
+    ) -> Result<(), Failure> {
         self.now.step = self.previous.step + 1;
         self.now.measurement = measurement.cloned();
         if let Some(z) = measurement {
             self.check_measurement(z)?;
         }
-        self.mix();
+        self.mix(observer);
         for j in 0..self.problem.modes.len() {
-            self.predict(j)?;
+            self.predict(j, observer)?;
         }
-        self.combine_prediction();
+        self.combine_prediction(observer);
         if measurement.is_some() {
             for j in 0..self.problem.modes.len() {
-                self.update(j)?;
+                self.update(j, observer)?;
             }
-            self.weigh()?;
+            self.weigh(observer)?;
         } else {
-            // No detection: nothing is learnt, and the probabilities follow the chain.
-            let now = &mut self.now;
-            now.forget_measured_values();
-            now.updated.clone_from(&now.predicted);
-            now.mode_probabilities.clone_from(&now.predicted_mode_probabilities);
+            self.go_without_detection(observer);
         }
-        self.combine();
+        self.combine(observer);
         let combined = &self.now.combined;
         if all_finite(&combined.mean) && all_finite(&combined.covariance) {
             return Ok(());
@@ -182,21 +214,27 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
     }
 
     /// Mode probabilities along the chain, and the estimates mixed accordingly.
-    fn mix(&mut self) {
+    fn mix(&mut self, observer: &mut impl Observer<T, N, M>) {
         let (e, problem, previous, now) = self.parts();
         let modes = problem.modes.len();
         for j in 0..modes {
             now.predicted_mode_probabilities[j] = (e.predicted_mode_probability)(problem, previous, now, j);
+        }
+        observer.computed(Quantity::PredictedModeProbabilities, 0, now);
+        for j in 0..modes {
             for i in 0..modes {
                 now.mixing_probabilities[j][i] = (e.mixing_probability)(problem, previous, now, j, i);
             }
+            observer.computed(Quantity::MixingProbabilities, j, now);
             now.mixed[j].mean = (e.mixed_mean)(problem, previous, now, j);
+            observer.computed(Quantity::MixedMean, j, now);
             now.mixed[j].covariance = (e.mixed_covariance)(problem, previous, now, j);
+            observer.computed(Quantity::MixedCovariance, j, now);
         }
     }
 
     /// One mode's prediction, with points if its filter draws them.
-    fn predict(&mut self, j: usize) -> Result<(), Failure> {
+    fn predict(&mut self, j: usize, observer: &mut impl Observer<T, N, M>) -> Result<(), Failure> {
         let (e, problem, previous, now) = self.parts();
         if e.draws_points {
             now.mixed_square_roots[j] = (e.mixed_square_root)(problem, previous, now, j)
@@ -207,12 +245,14 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
             }
         }
         now.predicted[j].mean = (e.predicted_mean)(problem, previous, now, j);
+        observer.computed(Quantity::PredictedMean, j, now);
         now.predicted[j].covariance = (e.predicted_covariance)(problem, previous, now, j);
+        observer.computed(Quantity::PredictedCovariance, j, now);
         Ok(())
     }
 
     /// One mode's update with a measurement, and its likelihood.
-    fn update(&mut self, j: usize) -> Result<(), Failure> {
+    fn update(&mut self, j: usize, observer: &mut impl Observer<T, N, M>) -> Result<(), Failure> {
         let (e, problem, previous, now) = self.parts();
         if e.draws_points {
             now.predicted_square_roots[j] = (e.predicted_square_root)(problem, previous, now, j)
@@ -223,19 +263,27 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
             }
         }
         now.predicted_measurements[j] = (e.predicted_measurement)(problem, previous, now, j);
+        observer.computed(Quantity::PredictedMeasurement, j, now);
         now.innovations[j] = (e.innovation)(problem, previous, now, j);
+        observer.computed(Quantity::Innovation, j, now);
         now.innovation_covariances[j] = (e.innovation_covariance)(problem, previous, now, j);
+        observer.computed(Quantity::InnovationCovariance, j, now);
         now.cross_covariances[j] = (e.cross_covariance)(problem, previous, now, j);
+        observer.computed(Quantity::CrossCovariance, j, now);
         now.gains[j] = (e.gain)(problem, previous, now, j)
             .map_err(|pivot| failure(problem, now, j, "zhu2016 (51)", "innovation covariance", pivot))?;
+        observer.computed(Quantity::Gain, j, now);
         now.updated[j].mean = (e.updated_mean)(problem, previous, now, j);
+        observer.computed(Quantity::UpdatedMean, j, now);
         now.updated[j].covariance = (e.updated_covariance)(problem, previous, now, j);
+        observer.computed(Quantity::UpdatedCovariance, j, now);
         now.log_likelihoods[j] = (e.log_likelihood)(problem, previous, now, j);
+        observer.computed(Quantity::LogLikelihood, j, now);
         Ok(())
     }
 
     /// The mode probabilities after the measurement.
-    fn weigh(&mut self) -> Result<(), Failure> {
+    fn weigh(&mut self, observer: &mut impl Observer<T, N, M>) -> Result<(), Failure> {
         let (e, problem, previous, now) = self.parts();
         for j in 0..problem.modes.len() {
             now.relative_likelihoods[j] = (e.relative_likelihood)(problem, previous, now, j);
@@ -253,21 +301,43 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
         for j in 0..problem.modes.len() {
             now.mode_probabilities[j] = (e.mode_probability)(problem, previous, now, j);
         }
+        observer.computed(Quantity::ModeProbabilities, 0, now);
         Ok(())
     }
 
+    /// No detection: nothing is learnt, and the probabilities follow the chain.
+    fn go_without_detection(&mut self, observer: &mut impl Observer<T, N, M>) {
+        let (e, problem, previous, now) = self.parts();
+        now.forget_measured_values();
+        for j in 0..problem.modes.len() {
+            now.updated[j].mean = (e.undetected_mean)(problem, previous, now, j);
+            observer.computed(Quantity::UpdatedMean, j, now);
+            now.updated[j].covariance = (e.undetected_covariance)(problem, previous, now, j);
+            observer.computed(Quantity::UpdatedCovariance, j, now);
+            now.log_likelihoods[j] = (e.undetected_log_likelihood)(problem, previous, now, j);
+        }
+        for j in 0..problem.modes.len() {
+            now.mode_probabilities[j] = (e.undetected_mode_probability)(problem, previous, now, j);
+        }
+        observer.computed(Quantity::ModeProbabilities, 0, now);
+    }
+
     /// The estimate before the measurement, for output.
-    fn combine_prediction(&mut self) {
+    fn combine_prediction(&mut self, observer: &mut impl Observer<T, N, M>) {
         let (e, problem, previous, now) = self.parts();
         now.combined_prediction.mean = (e.combined_prediction_mean)(problem, previous, now);
+        observer.computed(Quantity::CombinedPredictionMean, 0, now);
         now.combined_prediction.covariance = (e.combined_prediction_covariance)(problem, previous, now);
+        observer.computed(Quantity::CombinedPredictionCovariance, 0, now);
     }
 
     /// The estimate after the measurement, for output.
-    fn combine(&mut self) {
+    fn combine(&mut self, observer: &mut impl Observer<T, N, M>) {
         let (e, problem, previous, now) = self.parts();
         now.combined.mean = (e.combined_mean)(problem, previous, now);
+        observer.computed(Quantity::CombinedMean, 0, now);
         now.combined.covariance = (e.combined_covariance)(problem, previous, now);
+        observer.computed(Quantity::CombinedCovariance, 0, now);
     }
 
     /// What every equation is given.

@@ -80,6 +80,14 @@ pub struct Equations<T, const N: usize, const M: usize> {
     pub updated_covariance: OfMode<T, N, M, SMatrix<T, N, N>>,
     /// ln Lⱼ, [`log_density`].
     pub log_likelihood: OfMode<T, N, M, T>,
+    /// The updated mean without a detection: the predicted one.
+    pub undetected_mean: OfMode<T, N, M, SVector<T, N>>,
+    /// The updated covariance without a detection: the predicted one.
+    pub undetected_covariance: OfMode<T, N, M, SMatrix<T, N, N>>,
+    /// The log-likelihood without a detection: there is none.
+    pub undetected_log_likelihood: OfMode<T, N, M, T>,
+    /// The mode probability without a detection: the predicted one.
+    pub undetected_mode_probability: OfMode<T, N, M, T>,
     /// Mean of the combined prediction, [`mixture_mean`] under the predicted mode probabilities.
     pub combined_prediction_mean: OfAll<T, N, M, SVector<T, N>>,
     /// Covariance of the combined prediction, [`mixture_covariance`].
@@ -173,6 +181,11 @@ impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
                 update::updated_covariance(covariance, &now.gains[j], innovation_covariance)
             },
             log_likelihood: |_, _, now, j| log_density(&now.innovations[j], &ldl(&now.innovation_covariances[j])),
+
+            undetected_mean: |_, _, now, j| now.predicted[j].mean.clone(),
+            undetected_covariance: |_, _, now, j| now.predicted[j].covariance.clone(),
+            undetected_log_likelihood: |_, _, _, _| T::undecided(),
+            undetected_mode_probability: |_, _, now, j| now.predicted_mode_probabilities[j].clone(),
 
             combined_prediction_mean: |_, _, now| mixture_mean(&now.predicted_mode_probabilities, &now.predicted),
             combined_prediction_covariance: |_, _, now| {

@@ -15,6 +15,7 @@
 //! - [`probability`]: the equations of the mode probabilities;
 //! - [`problem`]: what a run is given, checked;
 //! - [`record`]: every value of one step, under its name;
+//! - [`quantity`]: the names of the values that are traced, and what each is computed from;
 //! - [`equations`]: the table that says which equation gives each value; a variant of the filter exchanges entries of it;
 //! - [`cycle`]: the one wiring that runs a table;
 //! - [`diagonal_mixing`]: a labelled stand-in for the OMTM-IMM that zhu2016 compares itself with;
@@ -26,9 +27,11 @@ pub mod equations;
 pub mod printed;
 pub mod probability;
 pub mod problem;
+pub mod quantity;
 pub mod record;
 
-pub use cycle::{Failure, Imm};
+pub use cycle::{Failure, Imm, Observer};
 pub use equations::Equations;
 pub use problem::{Initial, InvalidProblem, Problem};
+pub use quantity::Quantity;
 pub use record::Step;

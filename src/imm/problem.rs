@@ -142,21 +142,19 @@ impl<T: Real, const N: usize, const M: usize> Problem<T, N, M> {
             return Err(InvalidProblem::NoModes);
         }
         self.check_transition()?;
-        for mode in &self.modes {
-            let field = format!("modes[{}].F", mode.name);
-            check_finite(&mode.transition, field, "liu2017 (26)")?;
-            check_process_noise(&mode.noise, format!("modes[{}].Q", mode.name))?;
+        for (j, mode) in self.modes.iter().enumerate() {
+            check_finite(&mode.transition, format!("modes[{j}].F"), "liu2017 (26)")?;
+            check_process_noise(&mode.noise, format!("modes[{j}].Q"))?;
         }
         check_covariance(&self.measurement_noise, "R".into(), "liu2017 (19)")?;
         self.check_measurement()?;
         self.check_rule()?;
 
         check_length("initial.modes", initial.modes.len(), modes, "zhu2016 (55)")?;
-        for (estimate, mode) in initial.modes.iter().zip(&self.modes) {
-            let name = &mode.name;
-            let field = format!("initial.modes[{name}].mean");
+        for (j, estimate) in initial.modes.iter().enumerate() {
+            let field = format!("initial.modes[{j}].mean");
             check_finite(&estimate.mean, field, "zhu2016 (55)")?;
-            let field = format!("initial.modes[{name}].covariance");
+            let field = format!("initial.modes[{j}].covariance");
             check_covariance(&estimate.covariance, field, "zhu2016 (56)")?;
         }
         let probabilities = &initial.mode_probabilities;

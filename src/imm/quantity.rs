@@ -1,0 +1,270 @@
+//! The values of a step that are traced: their names, their shapes, and what each is computed from.
+//!
+//! After this file the reader knows the vocabulary of traces and verdicts: nineteen quantities, each given by the entry of the same
+//! name in [`Equations`](super::Equations), in the order in which the wiring computes them. The points of cubature filters are not
+//! among them: programs draw them in different orders.
+
+use super::Step;
+use crate::number::Field;
+use nalgebra::SMatrix;
+
+/// A traced value of a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[allow(
+    missing_docs,
+    reason = "each is the field of the same name of `Step`, where it is described"
+)]
+pub enum Quantity {
+    PredictedModeProbabilities,
+    MixingProbabilities,
+    MixedMean,
+    MixedCovariance,
+    PredictedMean,
+    PredictedCovariance,
+    CombinedPredictionMean,
+    CombinedPredictionCovariance,
+    PredictedMeasurement,
+    Innovation,
+    InnovationCovariance,
+    CrossCovariance,
+    Gain,
+    UpdatedMean,
+    UpdatedCovariance,
+    LogLikelihood,
+    ModeProbabilities,
+    CombinedMean,
+    CombinedCovariance,
+}
+
+/// What a quantity is computed from: another of the same step, or of the step before. Of the same step and mode if both have a mode,
+/// else of all modes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Input {
+    /// A quantity of the same step.
+    Now(Quantity),
+    /// A quantity of the step before.
+    Before(Quantity),
+}
+
+use Input::{Before, Now};
+use Quantity::{
+    CombinedCovariance, CombinedMean, CombinedPredictionCovariance, CombinedPredictionMean, CrossCovariance, Gain,
+    Innovation, InnovationCovariance, LogLikelihood, MixedCovariance, MixedMean, MixingProbabilities,
+    ModeProbabilities, PredictedCovariance, PredictedMean, PredictedMeasurement, PredictedModeProbabilities,
+    UpdatedCovariance, UpdatedMean,
+};
+
+impl Quantity {
+    /// All, in the order in which they are computed.
+    pub const ALL: [Self; 19] = [
+        PredictedModeProbabilities,
+        MixingProbabilities,
+        MixedMean,
+        MixedCovariance,
+        PredictedMean,
+        PredictedCovariance,
+        CombinedPredictionMean,
+        CombinedPredictionCovariance,
+        PredictedMeasurement,
+        Innovation,
+        InnovationCovariance,
+        CrossCovariance,
+        Gain,
+        UpdatedMean,
+        UpdatedCovariance,
+        LogLikelihood,
+        ModeProbabilities,
+        CombinedMean,
+        CombinedCovariance,
+    ];
+
+    /// The name in traces, with a dot where the value is nested.
+    pub fn name(self) -> &'static str {
+        match self {
+            PredictedModeProbabilities => "predicted_mode_probabilities",
+            MixingProbabilities => "mixing_probabilities",
+            MixedMean => "mixed.mean",
+            MixedCovariance => "mixed.covariance",
+            PredictedMean => "predicted.mean",
+            PredictedCovariance => "predicted.covariance",
+            CombinedPredictionMean => "combined_prediction.mean",
+            CombinedPredictionCovariance => "combined_prediction.covariance",
+            PredictedMeasurement => "predicted_measurement",
+            Innovation => "innovation",
+            InnovationCovariance => "innovation_covariance",
+            CrossCovariance => "cross_covariance",
+            Gain => "gain",
+            UpdatedMean => "updated.mean",
+            UpdatedCovariance => "updated.covariance",
+            LogLikelihood => "log_likelihood",
+            ModeProbabilities => "mode_probabilities",
+            CombinedMean => "combined.mean",
+            CombinedCovariance => "combined.covariance",
+        }
+    }
+
+    /// The printed equations that give it.
+    pub fn equation(self) -> &'static str {
+        match self {
+            PredictedModeProbabilities | MixingProbabilities => "zhu2016 (54), liu2017 (13)",
+            MixedMean => "zhu2016 (55), liu2017 (12)",
+            MixedCovariance => "zhu2016 (56), liu2017 (12)",
+            PredictedMean => "zhu2016 (21), liu2017 (17)",
+            PredictedCovariance => "zhu2016 (24), liu2017 (17)",
+            PredictedMeasurement => "zhu2016 (42), liu2017 (19)",
+            Innovation | UpdatedMean => "zhu2016 (52), liu2017 (20)",
+            InnovationCovariance => "zhu2016 (45), liu2017 (19)",
+            CrossCovariance => "zhu2016 (48), liu2017 (19)",
+            Gain => "zhu2016 (51), liu2017 (20)",
+            UpdatedCovariance => "zhu2016 (53), liu2017 (20)",
+            LogLikelihood => "zhu2016 (57), liu2017 (21)",
+            ModeProbabilities => "zhu2016 (58), liu2017 (22)",
+            CombinedMean | CombinedPredictionMean => "zhu2016 (59), liu2017 (23)",
+            CombinedCovariance | CombinedPredictionCovariance => "zhu2016 (60), liu2017 (24)",
+        }
+    }
+
+    /// Whether each mode has its own; otherwise it belongs to all together.
+    pub fn is_of_mode(self) -> bool {
+        !matches!(
+            self,
+            PredictedModeProbabilities
+                | CombinedPredictionMean
+                | CombinedPredictionCovariance
+                | ModeProbabilities
+                | CombinedMean
+                | CombinedCovariance
+        )
+    }
+
+    /// Whether it exists only where there is a detection.
+    pub fn needs_detection(self) -> bool {
+        matches!(
+            self,
+            PredictedMeasurement | Innovation | InnovationCovariance | CrossCovariance | Gain | LogLikelihood
+        )
+    }
+
+    /// Rows and columns, for n entries of the state, m of the measurement and r modes. Vectors have one column, scalars one row too.
+    pub fn shape(self, n: usize, m: usize, r: usize) -> (usize, usize) {
+        match self {
+            PredictedModeProbabilities | MixingProbabilities | ModeProbabilities => (r, 1),
+            MixedMean | PredictedMean | CombinedPredictionMean | UpdatedMean | CombinedMean => (n, 1),
+            MixedCovariance
+            | PredictedCovariance
+            | CombinedPredictionCovariance
+            | UpdatedCovariance
+            | CombinedCovariance => (n, n),
+            PredictedMeasurement | Innovation => (m, 1),
+            InnovationCovariance => (m, m),
+            CrossCovariance | Gain => (n, m),
+            LogLikelihood => (1, 1),
+        }
+    }
+
+    /// What it is computed from, besides the problem and the measurement.
+    pub fn inputs(self, has_detection: bool) -> &'static [Input] {
+        match self {
+            PredictedModeProbabilities => &[Before(ModeProbabilities)],
+            MixingProbabilities => &[Before(ModeProbabilities), Now(PredictedModeProbabilities)],
+            MixedMean => &[Now(MixingProbabilities), Before(UpdatedMean)],
+            MixedCovariance => &[
+                Now(MixingProbabilities),
+                Now(MixedMean),
+                Before(UpdatedMean),
+                Before(UpdatedCovariance),
+            ],
+            PredictedMean => &[Now(MixedMean), Now(MixedCovariance)],
+            PredictedCovariance => &[Now(MixedMean), Now(MixedCovariance), Now(PredictedMean)],
+            CombinedPredictionMean => &[Now(PredictedModeProbabilities), Now(PredictedMean)],
+            CombinedPredictionCovariance => &[
+                Now(PredictedModeProbabilities),
+                Now(PredictedMean),
+                Now(PredictedCovariance),
+                Now(CombinedPredictionMean),
+            ],
+            PredictedMeasurement => &[Now(PredictedMean), Now(PredictedCovariance)],
+            Innovation => &[Now(PredictedMeasurement)],
+            InnovationCovariance | CrossCovariance => {
+                &[Now(PredictedMean), Now(PredictedCovariance), Now(PredictedMeasurement)]
+            }
+            Gain => &[Now(InnovationCovariance), Now(CrossCovariance)],
+            UpdatedMean if has_detection => &[Now(PredictedMean), Now(Gain), Now(Innovation)],
+            UpdatedMean => &[Now(PredictedMean)],
+            UpdatedCovariance if has_detection => &[Now(PredictedCovariance), Now(Gain), Now(InnovationCovariance)],
+            UpdatedCovariance => &[Now(PredictedCovariance)],
+            LogLikelihood => &[Now(Innovation), Now(InnovationCovariance)],
+            ModeProbabilities if has_detection => &[Now(PredictedModeProbabilities), Now(LogLikelihood)],
+            ModeProbabilities => &[Now(PredictedModeProbabilities)],
+            CombinedMean => &[Now(ModeProbabilities), Now(UpdatedMean)],
+            CombinedCovariance => &[
+                Now(ModeProbabilities),
+                Now(UpdatedMean),
+                Now(UpdatedCovariance),
+                Now(CombinedMean),
+            ],
+        }
+    }
+}
+
+/// A row of numbers after another.
+fn by_rows<T: Field, const R: usize, const C: usize>(matrix: &SMatrix<T, R, C>) -> Vec<T> {
+    matrix.transpose().iter().cloned().collect()
+}
+
+/// The matrix whose rows these numbers are.
+fn from_rows<T: Field, const R: usize, const C: usize>(values: &[T]) -> SMatrix<T, R, C> {
+    SMatrix::from_fn(|row, column| values[row * C + column].clone())
+}
+
+impl<T: Field, const N: usize, const M: usize> Step<T, N, M> {
+    /// The numbers of a quantity, by rows; of mode j if the quantity has a mode.
+    pub fn values(&self, quantity: Quantity, j: usize) -> Vec<T> {
+        match quantity {
+            PredictedModeProbabilities => self.predicted_mode_probabilities.clone(),
+            MixingProbabilities => self.mixing_probabilities[j].clone(),
+            MixedMean => by_rows(&self.mixed[j].mean),
+            MixedCovariance => by_rows(&self.mixed[j].covariance),
+            PredictedMean => by_rows(&self.predicted[j].mean),
+            PredictedCovariance => by_rows(&self.predicted[j].covariance),
+            CombinedPredictionMean => by_rows(&self.combined_prediction.mean),
+            CombinedPredictionCovariance => by_rows(&self.combined_prediction.covariance),
+            PredictedMeasurement => by_rows(&self.predicted_measurements[j]),
+            Innovation => by_rows(&self.innovations[j]),
+            InnovationCovariance => by_rows(&self.innovation_covariances[j]),
+            CrossCovariance => by_rows(&self.cross_covariances[j]),
+            Gain => by_rows(&self.gains[j]),
+            UpdatedMean => by_rows(&self.updated[j].mean),
+            UpdatedCovariance => by_rows(&self.updated[j].covariance),
+            LogLikelihood => vec![self.log_likelihoods[j].clone()],
+            ModeProbabilities => self.mode_probabilities.clone(),
+            CombinedMean => by_rows(&self.combined.mean),
+            CombinedCovariance => by_rows(&self.combined.covariance),
+        }
+    }
+
+    /// Puts other numbers, by rows, in the place of a quantity. They must be as many as [`Step::values`] gives.
+    pub fn replace(&mut self, quantity: Quantity, j: usize, values: &[T]) {
+        match quantity {
+            PredictedModeProbabilities => self.predicted_mode_probabilities = values.to_vec(),
+            MixingProbabilities => self.mixing_probabilities[j] = values.to_vec(),
+            MixedMean => self.mixed[j].mean = from_rows(values),
+            MixedCovariance => self.mixed[j].covariance = from_rows(values),
+            PredictedMean => self.predicted[j].mean = from_rows(values),
+            PredictedCovariance => self.predicted[j].covariance = from_rows(values),
+            CombinedPredictionMean => self.combined_prediction.mean = from_rows(values),
+            CombinedPredictionCovariance => self.combined_prediction.covariance = from_rows(values),
+            PredictedMeasurement => self.predicted_measurements[j] = from_rows(values),
+            Innovation => self.innovations[j] = from_rows(values),
+            InnovationCovariance => self.innovation_covariances[j] = from_rows(values),
+            CrossCovariance => self.cross_covariances[j] = from_rows(values),
+            Gain => self.gains[j] = from_rows(values),
+            UpdatedMean => self.updated[j].mean = from_rows(values),
+            UpdatedCovariance => self.updated[j].covariance = from_rows(values),
+            LogLikelihood => self.log_likelihoods[j] = values[0].clone(),
+            ModeProbabilities => self.mode_probabilities = values.to_vec(),
+            CombinedMean => self.combined.mean = from_rows(values),
+            CombinedCovariance => self.combined.covariance = from_rows(values),
+        }
+    }
+}
