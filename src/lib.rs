@@ -11,6 +11,7 @@
 //! | [`model`]      | how the target moves, what the sensor sees                                                |
 //! | [`filter`]     | one filter: Kalman and cubature                                                           |
 //! | [`imm`]        | the cycle                                                                                 |
+//! | [`oracle`]     | certified cases, traces, and the judge of other filters                                   |
 //!
 //! Arrows run downwards: numbers know nothing, equations know numbers and matrices. Equations, filters and the cycle read no files,
 //! draw no random numbers and print nothing.
@@ -21,6 +22,7 @@ pub mod imm;
 pub mod matrix;
 pub mod model;
 pub mod number;
+pub mod oracle;
 pub mod paper;
 pub mod report;
 pub mod rule;

@@ -142,6 +142,11 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
         &self.now
     }
 
+    /// The last step, to be overwritten by one that was computed elsewhere.
+    pub(crate) fn current_mut(&mut self) -> &mut Step<T, N, M> {
+        &mut self.now
+    }
+
     /// The problem that is run.
     pub fn problem(&self) -> &Problem<T, N, M> {
         &self.problem

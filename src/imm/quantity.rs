@@ -162,6 +162,22 @@ impl Quantity {
         }
     }
 
+    /// 0 for a scalar, 1 for a vector, 2 for a matrix.
+    pub fn rank(self) -> usize {
+        match self {
+            LogLikelihood => 0,
+            MixedCovariance
+            | PredictedCovariance
+            | CombinedPredictionCovariance
+            | InnovationCovariance
+            | CrossCovariance
+            | Gain
+            | UpdatedCovariance
+            | CombinedCovariance => 2,
+            _ => 1,
+        }
+    }
+
     /// What it is computed from, besides the problem and the measurement.
     pub fn inputs(self, has_detection: bool) -> &'static [Input] {
         match self {

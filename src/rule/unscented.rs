@@ -2,8 +2,10 @@
 //!
 //! After this file the reader knows both parametrisations of the unscented transform and when its centre weight is negative.
 
-use super::{ExactRule, InvalidRule, along_axis, dimension_as_rational, opposite};
-use crate::number::{Field, Rational, Surd};
+use super::{ExactRule, InvalidRule, Rule, along_axis, dimension_as_rational, opposite};
+use crate::number::{Field, Rational, Real, Surd};
+use nalgebra::SVector;
+use std::cmp::Ordering;
 
 /// The parameters of the unscented rule.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,9 +39,15 @@ impl Parameters {
     ///
     /// Source: Wan and van der Merwe, The unscented Kalman filter, 2001.
     pub fn lambda(&self, n: usize) -> Rational {
-        let n = dimension_as_rational(n);
-        self.alpha.clone() * self.alpha.clone() * (n.clone() + self.kappa.clone()) - n
+        lambda(&dimension_as_rational(n), &self.alpha, &self.kappa)
     }
+}
+
+/// λ = α²(n + κ) − n.
+///
+/// Source: Wan and van der Merwe, The unscented Kalman filter, 2001.
+pub fn lambda<T: Field>(n: &T, alpha: &T, kappa: &T) -> T {
+    alpha.clone() * alpha.clone() * (n.clone() + kappa.clone()) - n.clone()
 }
 
 /// The unscented rule.
@@ -107,10 +115,53 @@ pub fn unscented(n: usize, parameters: &Parameters) -> Result<ExactRule, Invalid
             (axis_weight(&n_exact, &lambda), points),
         ],
     );
-    let alpha_squared = parameters.alpha.clone() * parameters.alpha.clone();
-    rule.covariance_weights[0] =
-        rule.weights[0].clone() + Rational::new(1, 1) - alpha_squared + parameters.beta.clone();
+    rule.covariance_weights[0] = centre_covariance_weight(&rule.weights[0], &parameters.alpha, &parameters.beta);
     Ok(rule)
+}
+
+/// The unscented rule with parameters that are numbers of a filter, such as doubles, whose radius has no form as a surd.
+///
+/// Source: as [`unscented`], of which it has the points and their order.
+///
+/// # Errors
+///
+/// [`InvalidRule::Radius`] when n + λ is not positive.
+///
+/// Evidence: `the_unscented_rule_of_doubles_is_the_exact_one_rounded`.
+pub fn unscented_in<T: Real, const N: usize>(alpha: T, beta: T, kappa: T) -> Result<Rule<T, N>, InvalidRule> {
+    let n = T::integer(i64::try_from(N).unwrap_or(i64::MAX));
+    let lambda = lambda(&n, &alpha, &kappa);
+    let radius_squared = n.clone() + lambda.clone();
+    if radius_squared.partial_cmp(&T::zero()) != Some(Ordering::Greater) {
+        return Err(InvalidRule::Radius {
+            radius_squared: format!("{radius_squared:?}"),
+        });
+    }
+    let radius = radius_squared.sqrt();
+    let mut points = vec![SVector::zeros()];
+    for sign in [T::one(), -T::one()] {
+        for i in 0..N {
+            let mut point = SVector::<T, N>::zeros();
+            point[i] = sign.clone() * radius.clone();
+            points.push(point);
+        }
+    }
+    let mut weights = vec![axis_weight(&n, &lambda); points.len()];
+    weights[0] = centre_weight(&n, &lambda);
+    let mut covariance_weights = weights.clone();
+    covariance_weights[0] = centre_covariance_weight(&weights[0], &alpha, &beta);
+    Ok(Rule {
+        points,
+        weights,
+        covariance_weights,
+    })
+}
+
+/// The weight of the centre for covariances, w₀ + 1 − α² + β.
+///
+/// Source: as [`lambda`].
+pub fn centre_covariance_weight<T: Field>(centre_weight: &T, alpha: &T, beta: &T) -> T {
+    centre_weight.clone() + T::one() - alpha.clone() * alpha.clone() + beta.clone()
 }
 
 /// The weight of the centre, λ/(n + λ).

@@ -1,0 +1,76 @@
+//! Why a file is refused: the place inside it, the reason, and the class of the reason.
+
+use serde::Serialize;
+
+/// The class of a reason, by which the refusals of different programs can be compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Class {
+    /// Not JSON, an unknown or missing key, another format.
+    Format,
+    /// A list or matrix of the wrong size.
+    Shape,
+    /// A number that is not finite.
+    NotFinite,
+    /// A negative probability, or probabilities that do not sum to one.
+    NotAProbability,
+    /// A covariance that is not symmetric.
+    NotSymmetric,
+    /// A covariance that is not positive definite.
+    NotPositiveDefinite,
+    /// A filter, rule, measurement or convention that does not exist.
+    Unknown,
+    /// A bearing beyond two turns.
+    Angle,
+}
+
+impl Class {
+    /// All classes.
+    pub const ALL: [Self; 8] = [
+        Self::Format,
+        Self::Shape,
+        Self::NotFinite,
+        Self::NotAProbability,
+        Self::NotSymmetric,
+        Self::NotPositiveDefinite,
+        Self::Unknown,
+        Self::Angle,
+    ];
+
+    /// The name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Format => "format",
+            Self::Shape => "shape",
+            Self::NotFinite => "not-finite",
+            Self::NotAProbability => "not-a-probability",
+            Self::NotSymmetric => "not-symmetric",
+            Self::NotPositiveDefinite => "not-positive-definite",
+            Self::Unknown => "unknown",
+            Self::Angle => "angle",
+        }
+    }
+}
+
+/// A file that cannot be used.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{place}: {reason}")]
+pub struct Invalid {
+    /// The class of the reason.
+    pub class: Class,
+    /// The place inside the file, such as `problem.modes[1].Q[0][2]`.
+    pub place: String,
+    /// The reason.
+    pub reason: String,
+}
+
+impl Invalid {
+    /// A refusal.
+    pub fn new(class: Class, place: impl Into<String>, reason: impl Into<String>) -> Self {
+        Self {
+            class,
+            place: place.into(),
+            reason: reason.into(),
+        }
+    }
+}

@@ -1,0 +1,10 @@
+//! The oracle: certified cases, traces, and the judge of other filters.
+//!
+//! - [`shape`], [`setup`], [`run`]: from a file to a run in any number system.
+
+pub mod invalid;
+pub mod problem;
+pub mod run;
+pub mod setup;
+pub mod shape;
+pub mod trace;

@@ -1,0 +1,504 @@
+//! The problem file: what a case gives to a filter, read, checked and put into any number system.
+//!
+//! After this file the reader knows the format `immaculate-problem/1` from the code's side (`spec/formats.md` is its description)
+//! and how every defect of a file becomes one sentence with the place inside the file.
+
+use super::invalid::{Class, Invalid};
+use super::setup::Setup;
+use super::shape;
+use crate::gaussian::Gaussian;
+use crate::imm::{Equations, Initial, InvalidProblem, Problem};
+use crate::model::{Measurement, PolarComponent, motion::Mode};
+use crate::number::Real;
+use crate::rule::{Rule, RuleName, unscented};
+use nalgebra::{SMatrix, SVector};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The format of problem files.
+pub const FORMAT: &str = "immaculate-problem/1";
+
+/// A matrix as a list of rows.
+pub type Rows = Vec<Vec<f64>>;
+
+/// A problem file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ProblemFile {
+    /// `immaculate-problem/1`.
+    pub format: String,
+    /// The name of the case; never changed and never used again.
+    pub id: String,
+    /// What the case is for.
+    pub about: String,
+    /// What the case is for, in words of the list that `immaculate cases list` knows.
+    pub flags: Vec<String>,
+    /// The names of the n entries of the state.
+    pub state: Vec<String>,
+    /// Their units.
+    pub units: Vec<String>,
+    /// The modes, at least one.
+    pub modes: Vec<ModeFile>,
+    /// What the sensor sees.
+    pub measurement: MeasurementFile,
+    /// Covariance of the measurement's noise, m × m.
+    #[serde(rename = "R")]
+    pub noise: Rows,
+    /// The filter.
+    pub filter: FilterFile,
+    /// `transition[i][j]` = P(mode j at k ∣ mode i at k−1).
+    pub transition: Rows,
+    /// The estimate at step 0, a posterior.
+    pub initial: InitialFile,
+    /// The choices that the papers leave open.
+    pub conventions: Conventions,
+    /// One entry a step: 1, 2, 3, …
+    pub measurements: Vec<MeasurementAt>,
+}
+
+/// A mode.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ModeFile {
+    /// Its name.
+    pub name: String,
+    /// Transition matrix, n × n.
+    #[serde(rename = "F")]
+    pub transition: Rows,
+    /// Covariance of the process noise, n × n.
+    #[serde(rename = "Q")]
+    pub noise: Rows,
+}
+
+/// What the sensor sees.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+pub enum MeasurementFile {
+    /// z = H x + v.
+    Linear {
+        /// m × n.
+        #[serde(rename = "H")]
+        matrix: Rows,
+    },
+    /// Distance and direction from a sensor.
+    RangeBearing {
+        /// What each entry of z is: `range` or `bearing`.
+        components: Vec<String>,
+        /// Which entries of the state are x and y, counted from 0.
+        position: [usize; 2],
+        /// Where the sensor stands.
+        sensor: [f64; 2],
+    },
+}
+
+/// The filter.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+pub enum FilterFile {
+    /// Linear motion and measurement.
+    Kalman {},
+    /// Moments by the points of a rule.
+    Cubature {
+        /// `cubature-3`, `cubature-5`, `simplex-5`, `gauss-hermite-2` to `gauss-hermite-5`.
+        rule: String,
+    },
+    /// Moments by the points of the unscented rule.
+    Unscented {
+        /// α.
+        alpha: f64,
+        /// β.
+        beta: f64,
+        /// κ.
+        kappa: f64,
+    },
+}
+
+impl FilterFile {
+    /// The kind's short name: `kalman`, `unscented`, or the rule's.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Kalman {} => "kalman",
+            Self::Cubature { rule } => rule,
+            Self::Unscented { .. } => "unscented",
+        }
+    }
+}
+
+/// The estimate at step 0.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct InitialFile {
+    /// One a mode.
+    pub mode_probabilities: Vec<f64>,
+    /// One a mode.
+    pub modes: Vec<EstimateFile>,
+}
+
+/// Mean and covariance.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct EstimateFile {
+    /// n numbers.
+    pub mean: Vec<f64>,
+    /// n × n.
+    pub covariance: Rows,
+}
+
+/// The choices that the papers leave open; every key is always there.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Conventions {
+    /// `cholesky-lower`.
+    pub square_root: String,
+    /// `centre-point`.
+    pub angle_mean: String,
+    /// `mixed`.
+    pub first_step: String,
+    /// `full`.
+    pub log_likelihood: String,
+}
+
+impl Default for Conventions {
+    fn default() -> Self {
+        Self {
+            square_root: "cholesky-lower".into(),
+            angle_mean: "centre-point".into(),
+            first_step: "mixed".into(),
+            log_likelihood: "full".into(),
+        }
+    }
+}
+
+/// The measurement of a step; `null` is a missed detection.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MeasurementAt {
+    /// The step, counted from 1.
+    pub step: usize,
+    /// m numbers, or null.
+    #[serde(deserialize_with = "Option::deserialize")]
+    #[schemars(required)]
+    pub z: Option<Vec<f64>>,
+}
+
+impl ProblemFile {
+    /// Reads a problem from JSON and checks it.
+    ///
+    /// # Errors
+    ///
+    /// [`Invalid`] with the place inside the file.
+    pub fn read(text: &str) -> Result<Self, Invalid> {
+        let problem = Self::parse(text)?;
+        problem.check()?;
+        Ok(problem)
+    }
+
+    /// Reads a problem whose contents may be wrong; only the JSON and the keys must be right.
+    ///
+    /// # Errors
+    ///
+    /// [`Invalid`] with the place inside the file.
+    pub fn parse(text: &str) -> Result<Self, Invalid> {
+        let mut deserializer = serde_json::Deserializer::from_str(text);
+        let problem: Self = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
+            let place = error.path().to_string();
+            let place = if place == "." {
+                "problem".to_owned()
+            } else {
+                format!("problem.{place}")
+            };
+            Invalid::new(Class::Format, place, error.inner().to_string())
+        })?;
+        deserializer
+            .end()
+            .map_err(|error| Invalid::new(Class::Format, "problem", error.to_string()))?;
+        Ok(problem)
+    }
+
+    /// n, m and r: entries of the state, of the measurement, and modes.
+    pub fn dimensions(&self) -> (usize, usize, usize) {
+        (self.state.len(), self.noise.len(), self.modes.len())
+    }
+
+    /// Checks all that the filter relies on.
+    ///
+    /// # Errors
+    ///
+    /// [`Invalid`] with the place inside the file.
+    pub fn check(&self) -> Result<(), Invalid> {
+        if self.format != FORMAT {
+            let reason = format!("is {:?}, but this program reads {FORMAT:?}", self.format);
+            return Err(Invalid::new(Class::Format, "problem.format", reason));
+        }
+        self.check_conventions()?;
+        self.check_shapes()?;
+        self.check_filter()?;
+        self.check_measurements()?;
+        shape::dispatch(self.state.len(), self.noise.len(), TypedCheck(self))?
+    }
+
+    fn check_conventions(&self) -> Result<(), Invalid> {
+        let (given, known) = (&self.conventions, Conventions::default());
+        let pairs = [
+            ("square_root", &given.square_root, &known.square_root),
+            ("angle_mean", &given.angle_mean, &known.angle_mean),
+            ("first_step", &given.first_step, &known.first_step),
+            ("log_likelihood", &given.log_likelihood, &known.log_likelihood),
+        ];
+        for (key, given, known) in pairs {
+            if given != known {
+                let reason = format!("is {given:?}; problems of this format have {known:?}");
+                return Err(Invalid::new(
+                    Class::Unknown,
+                    format!("problem.conventions.{key}"),
+                    reason,
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    fn check_shapes(&self) -> Result<(), Invalid> {
+        let (n, m, r) = self.dimensions();
+        check_length("problem.units", self.units.len(), n)?;
+        check_matrix("problem.R", &self.noise, m, m)?;
+        if r == 0 {
+            return Err(Invalid::new(
+                Class::Shape,
+                "problem.modes",
+                "is empty; the filter needs at least one",
+            ));
+        }
+        for (j, mode) in self.modes.iter().enumerate() {
+            check_matrix(&format!("problem.modes[{j}].F"), &mode.transition, n, n)?;
+            check_matrix(&format!("problem.modes[{j}].Q"), &mode.noise, n, n)?;
+        }
+        match &self.measurement {
+            MeasurementFile::Linear { matrix } => check_matrix("problem.measurement.H", matrix, m, n)?,
+            MeasurementFile::RangeBearing { components, .. } => {
+                check_length("problem.measurement.components", components.len(), m)?;
+            }
+        }
+        check_matrix("problem.transition", &self.transition, r, r)?;
+        check_length("problem.initial.modes", self.initial.modes.len(), r)?;
+        check_length(
+            "problem.initial.mode_probabilities",
+            self.initial.mode_probabilities.len(),
+            r,
+        )?;
+        for (j, estimate) in self.initial.modes.iter().enumerate() {
+            check_length(&format!("problem.initial.modes[{j}].mean"), estimate.mean.len(), n)?;
+            check_matrix(
+                &format!("problem.initial.modes[{j}].covariance"),
+                &estimate.covariance,
+                n,
+                n,
+            )?;
+        }
+        Ok(())
+    }
+
+    fn check_filter(&self) -> Result<(), Invalid> {
+        match &self.filter {
+            FilterFile::Cubature { rule } => rule
+                .parse::<RuleName>()
+                .map(drop)
+                .map_err(|error| Invalid::new(Class::Unknown, "problem.filter.rule", error.to_string())),
+            FilterFile::Kalman {} if !matches!(self.measurement, MeasurementFile::Linear { .. }) => Err(Invalid::new(
+                Class::Unknown,
+                "problem.filter.kind",
+                "is kalman, which has no range and bearing; use a filter with points",
+            )),
+            FilterFile::Kalman {} | FilterFile::Unscented { .. } => Ok(()),
+        }
+    }
+
+    fn check_measurements(&self) -> Result<(), Invalid> {
+        let m = self.noise.len();
+        for (place, entry) in self.measurements.iter().enumerate() {
+            if entry.step != place + 1 {
+                let field = format!("problem.measurements[{place}].step");
+                let reason = format!(
+                    "is {}, but steps count 1, 2, 3 without a gap: {}",
+                    entry.step,
+                    place + 1
+                );
+                return Err(Invalid::new(Class::Shape, field, reason));
+            }
+            let Some(z) = &entry.z else { continue };
+            let field = format!("problem.measurements[{place}].z");
+            check_length(&field, z.len(), m)?;
+            for (row, value) in z.iter().enumerate() {
+                if self.is_bearing(row) && value.abs() > 2.0 * std::f64::consts::PI {
+                    let reason = format!("is {value}, a bearing outside ±2π: is it in degrees?");
+                    return Err(Invalid::new(Class::Angle, format!("{field}[{row}]"), reason));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether an entry of the measurement is an angle.
+    pub fn is_bearing(&self, row: usize) -> bool {
+        match &self.measurement {
+            MeasurementFile::Linear { .. } => false,
+            MeasurementFile::RangeBearing { components, .. } => {
+                components.get(row).is_some_and(|component| component == "bearing")
+            }
+        }
+    }
+
+    /// The problem in a number system; `number` puts a double there.
+    ///
+    /// The lists must have the right lengths, which [`ProblemFile::check`] sees to.
+    ///
+    /// # Errors
+    ///
+    /// [`Invalid`] for a measurement, rule or dimension that does not exist.
+    pub fn setup<T: Real, const N: usize, const M: usize>(
+        &self,
+        number: fn(f64) -> T,
+    ) -> Result<Setup<T, N, M>, Invalid> {
+        let list = |values: &[f64]| -> Vec<T> { values.iter().map(|&value| number(value)).collect() };
+        let modes = self.modes.iter().map(|mode| Mode {
+            name: mode.name.clone(),
+            transition: matrix(&mode.transition, number),
+            noise: matrix(&mode.noise, number),
+        });
+        let estimates = self.initial.modes.iter().map(|estimate| Gaussian {
+            mean: vector(&estimate.mean, number),
+            covariance: matrix(&estimate.covariance, number),
+        });
+        let rule = self.rule(number)?;
+        Ok(Setup {
+            equations: if rule.is_some() {
+                Equations::cubature()
+            } else {
+                Equations::kalman()
+            },
+            problem: Problem {
+                modes: modes.collect(),
+                transition: self.transition.iter().map(|row| list(row)).collect(),
+                measurement: self.measurement(number)?,
+                measurement_noise: matrix(&self.noise, number),
+                rule,
+            },
+            initial: Initial {
+                modes: estimates.collect(),
+                mode_probabilities: list(&self.initial.mode_probabilities),
+            },
+            measurements: self
+                .measurements
+                .iter()
+                .map(|entry| entry.z.as_ref().map(|z| vector(z, number)))
+                .collect(),
+        })
+    }
+
+    fn measurement<T: Real, const N: usize, const M: usize>(
+        &self,
+        number: fn(f64) -> T,
+    ) -> Result<Measurement<T, N, M>, Invalid> {
+        match &self.measurement {
+            MeasurementFile::Linear { matrix: rows } => Ok(Measurement::Linear(matrix(rows, number))),
+            MeasurementFile::RangeBearing {
+                components,
+                position,
+                sensor,
+            } => {
+                let mut named = [PolarComponent::Range; M];
+                for (place, (component, name)) in named.iter_mut().zip(components).enumerate() {
+                    *component = match name.as_str() {
+                        "range" => PolarComponent::Range,
+                        "bearing" => PolarComponent::Bearing,
+                        _ => {
+                            let field = format!("problem.measurement.components[{place}]");
+                            let reason = format!("is {name:?}; a component is \"range\" or \"bearing\"");
+                            return Err(Invalid::new(Class::Unknown, field, reason));
+                        }
+                    };
+                }
+                Ok(Measurement::Polar {
+                    components: named,
+                    position: *position,
+                    sensor: sensor.map(number),
+                })
+            }
+        }
+    }
+
+    fn rule<T: Real, const N: usize>(&self, number: fn(f64) -> T) -> Result<Option<Rule<T, N>>, Invalid> {
+        let (field, rule) = match &self.filter {
+            FilterFile::Kalman {} => return Ok(None),
+            FilterFile::Cubature { rule } => (
+                "problem.filter.rule",
+                rule.parse::<RuleName>().and_then(|name| name.rule()),
+            ),
+            FilterFile::Unscented { alpha, beta, kappa } => (
+                "problem.filter",
+                unscented::unscented_in(number(*alpha), number(*beta), number(*kappa)),
+            ),
+        };
+        rule.map(Some)
+            .map_err(|error| Invalid::new(Class::Unknown, field, error.to_string()))
+    }
+}
+
+/// Puts a problem into doubles and lets the cycle check it.
+struct TypedCheck<'a>(&'a ProblemFile);
+
+impl shape::Work for TypedCheck<'_> {
+    type Output = Result<(), Invalid>;
+
+    fn run<const N: usize, const M: usize>(self) -> Self::Output {
+        let setup = self.0.setup::<f64, N, M>(|value| value)?;
+        setup.problem.check(&setup.initial).map_err(|error| of_problem(&error))
+    }
+}
+
+/// The class and the place of what the cycle refuses.
+fn of_problem(error: &InvalidProblem) -> Invalid {
+    let class = match error {
+        InvalidProblem::Length { .. }
+        | InvalidProblem::NoModes
+        | InvalidProblem::RuleLengths { .. }
+        | InvalidProblem::Position { .. } => Class::Shape,
+        InvalidProblem::NotFinite { .. } => Class::NotFinite,
+        InvalidProblem::NegativeProbability { .. } | InvalidProblem::NotNormalised { .. } => Class::NotAProbability,
+        InvalidProblem::NotSymmetric { .. } => Class::NotSymmetric,
+        InvalidProblem::NotPositive { .. } => Class::NotPositiveDefinite,
+        InvalidProblem::NotLinear | InvalidProblem::Rule { .. } => Class::Unknown,
+    };
+    // The sentence starts with the field in backquotes.
+    let sentence = error.to_string();
+    match sentence.strip_prefix('`').and_then(|rest| rest.split_once('`')) {
+        Some((field, rest)) => Invalid::new(class, format!("problem.{field}"), rest.trim_start()),
+        None => Invalid::new(class, "problem", sentence),
+    }
+}
+
+fn check_length(field: &str, found: usize, expected: usize) -> Result<(), Invalid> {
+    if found == expected {
+        return Ok(());
+    }
+    let reason = format!("has {found} entries where {expected} are needed");
+    Err(Invalid::new(Class::Shape, field, reason))
+}
+
+fn check_matrix(field: &str, rows: &Rows, height: usize, width: usize) -> Result<(), Invalid> {
+    check_length(field, rows.len(), height)?;
+    for (place, row) in rows.iter().enumerate() {
+        check_length(&format!("{field}[{place}]"), row.len(), width)?;
+    }
+    Ok(())
+}
+
+/// A matrix of so many rows and columns from a list of rows.
+fn matrix<T: Real, const R: usize, const C: usize>(rows: &Rows, number: fn(f64) -> T) -> SMatrix<T, R, C> {
+    SMatrix::from_fn(|row, column| number(rows[row][column]))
+}
+
+/// A vector from a list.
+fn vector<T: Real, const R: usize>(values: &[f64], number: fn(f64) -> T) -> SVector<T, R> {
+    SVector::from_fn(|row, _| number(values[row]))
+}

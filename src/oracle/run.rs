@@ -1,0 +1,106 @@
+//! Running a problem: by itself, or along the values of another program.
+//!
+//! After this file the reader knows the one idea on which the judging rests. The wiring runs as ever, but whenever the program under test
+//! shows a value, the computed one is kept for comparison and *the program's own* is put in its place. So each value is computed
+//! from the program's own earlier values, and where some are hidden, from the last ones that it showed.
+
+use super::setup::Setup;
+use super::trace::{Dimensions, Table, Trace};
+use crate::imm::{Failure, Observer, Quantity, Step};
+use crate::number::Real;
+
+/// What a run computed.
+#[derive(Debug, Clone)]
+pub struct Computed<T> {
+    /// The values, each as it was computed.
+    pub values: Table<Vec<T>>,
+    /// The steps that could not be computed.
+    pub failures: Vec<Failure>,
+}
+
+/// Keeps the computed values, and puts shown ones in their places.
+struct Exchange<'a, T> {
+    computed: &'a mut Table<Vec<T>>,
+    shown: Option<&'a Trace>,
+    number: fn(f64) -> T,
+}
+
+impl<T: Real, const N: usize, const M: usize> Observer<T, N, M> for Exchange<'_, T> {
+    fn computed(&mut self, quantity: Quantity, j: usize, now: &mut Step<T, N, M>) {
+        let shown = self.shown.and_then(|shown| shown.get(now.step, quantity, j));
+        self.computed.set(now.step, quantity, j, now.values(quantity, j));
+        if let Some(shown) = shown.filter(|values| values.iter().all(|value| value.is_finite())) {
+            let own: Vec<T> = shown.iter().map(|&value| (self.number)(value)).collect();
+            now.replace(quantity, j, &own);
+        }
+    }
+}
+
+impl<T: Real, const N: usize, const M: usize> Setup<T, N, M> {
+    /// The dimensions of the problem.
+    pub fn dimensions(&self) -> Dimensions {
+        Dimensions {
+            n: N,
+            m: M,
+            r: self.problem.modes.len(),
+            steps: self.measurements.len(),
+        }
+    }
+
+    /// Runs the problem.
+    pub fn run(&self) -> Computed<T> {
+        self.exchange(None, |_| T::undecided())
+    }
+
+    /// Runs the problem along the values that another program shows, which `number` puts into this number system.
+    pub fn run_along(&self, shown: &Trace, number: fn(f64) -> T) -> Computed<T> {
+        self.exchange(Some(shown), number)
+    }
+
+    fn exchange(&self, shown: Option<&Trace>, number: fn(f64) -> T) -> Computed<T> {
+        let mut filter = self.filter();
+        let mut values = Table::empty(self.dimensions());
+        let mut failures = Vec::new();
+        for (index, measurement) in self.measurements.iter().enumerate() {
+            let mut exchange = Exchange {
+                computed: &mut values,
+                shown,
+                number,
+            };
+            let Err(failure) = filter.step_observed(measurement.as_ref(), &mut exchange) else {
+                continue;
+            };
+            failures.push(failure);
+            // The run can go on if the program shows all that the next step needs.
+            let Some(shown) = shown else { break };
+            let now = filter.current_mut();
+            now.step = index + 1;
+            if !resume(now, shown, number) {
+                break;
+            }
+        }
+        Computed { values, failures }
+    }
+}
+
+/// Takes over the estimates and probabilities that a program shows for a step; whether it shows them all.
+fn resume<T: Real, const N: usize, const M: usize>(
+    now: &mut Step<T, N, M>,
+    shown: &Trace,
+    number: fn(f64) -> T,
+) -> bool {
+    let r = now.updated.len();
+    let needed = (0..r)
+        .flat_map(|j| [(Quantity::UpdatedMean, j), (Quantity::UpdatedCovariance, j)])
+        .chain([(Quantity::ModeProbabilities, 0)]);
+    for (quantity, j) in needed {
+        match shown.get(now.step, quantity, j) {
+            Some(values) if values.iter().all(|value| value.is_finite()) => {
+                let own: Vec<T> = values.iter().map(|&value| number(value)).collect();
+                now.replace(quantity, j, &own);
+            }
+            _ => return false,
+        }
+    }
+    true
+}

@@ -1,0 +1,366 @@
+//! Traces in memory and as JSON: what a filter computed, step by step, under the names of [`Quantity`].
+//!
+//! After this file the reader knows the format `immaculate-trace/1` from the code's side, and with how much patience the traces of other
+//! programs are read: a scalar for a 1 × 1 matrix, an object for a list of one, any nesting with the right count of numbers.
+
+use super::invalid::{Class, Invalid};
+use crate::imm::Quantity;
+use serde::Serialize;
+use serde_json::{Map, Value, json};
+
+/// The format of trace files.
+pub const FORMAT: &str = "immaculate-trace/1";
+
+/// The dimensions of the problem that a trace belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Dimensions {
+    /// Entries of the state.
+    pub n: usize,
+    /// Entries of the measurement.
+    pub m: usize,
+    /// Modes.
+    pub r: usize,
+    /// Steps.
+    pub steps: usize,
+}
+
+/// One value for each step, quantity and mode, where there is one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Table<V> {
+    /// The dimensions of the problem.
+    pub dimensions: Dimensions,
+    cells: Vec<Option<V>>,
+}
+
+/// The numbers of a trace, by rows.
+pub type Trace = Table<Vec<f64>>;
+
+impl<V> Table<V> {
+    /// A table in which nothing is shown.
+    pub fn empty(dimensions: Dimensions) -> Self {
+        let cells = dimensions.steps * Quantity::ALL.len() * dimensions.r;
+        Self {
+            dimensions,
+            cells: std::iter::repeat_with(|| None).take(cells).collect(),
+        }
+    }
+
+    /// The place of a value; steps count from 1, and a quantity of all modes stands at mode 0.
+    fn place(&self, step: usize, quantity: Quantity, mode: usize) -> usize {
+        ((step - 1) * Quantity::ALL.len() + quantity as usize) * self.dimensions.r + mode
+    }
+
+    /// The value of a quantity, if there is one.
+    pub fn get(&self, step: usize, quantity: Quantity, mode: usize) -> Option<&V> {
+        self.cells
+            .get(self.place(step, quantity, mode))
+            .and_then(Option::as_ref)
+    }
+
+    /// Sets a value.
+    pub fn set(&mut self, step: usize, quantity: Quantity, mode: usize, value: V) {
+        let place = self.place(step, quantity, mode);
+        if let Some(cell) = self.cells.get_mut(place) {
+            *cell = Some(value);
+        }
+    }
+
+    /// All places of a step in the order in which they are computed: quantity by quantity, mode by mode.
+    pub fn places(&self, step: usize) -> impl Iterator<Item = (usize, Quantity, usize)> + use<V> {
+        let r = self.dimensions.r;
+        Quantity::ALL.into_iter().flat_map(move |quantity| {
+            let modes = if quantity.is_of_mode() { r } else { 1 };
+            (0..modes).map(move |mode| (step, quantity, mode))
+        })
+    }
+
+    /// All places of all steps.
+    pub fn all_places(&self) -> impl Iterator<Item = (usize, Quantity, usize)> + use<'_, V> {
+        (1..=self.dimensions.steps).flat_map(|step| self.places(step))
+    }
+
+    /// A table with another value in each place that has one.
+    pub fn map<W>(&self, mut other: impl FnMut((usize, Quantity, usize), &V) -> W) -> Table<W> {
+        let mut table = Table::empty(self.dimensions);
+        for place in self.all_places() {
+            if let Some(value) = self.get(place.0, place.1, place.2) {
+                table.set(place.0, place.1, place.2, other(place, value));
+            }
+        }
+        table
+    }
+
+    /// The number of values.
+    pub fn count(&self) -> usize {
+        self.cells.iter().filter(|cell| cell.is_some()).count()
+    }
+
+    /// The list of steps as JSON; `leaf` writes a value.
+    pub fn to_json(&self, leaf: impl Fn(Quantity, &V) -> Value) -> Vec<Value> {
+        let Dimensions { r, steps, .. } = self.dimensions;
+        (1..=steps)
+            .map(|step| {
+                let mut whole = Map::new();
+                whole.insert("step".into(), json!(step));
+                let mut modes = vec![Map::new(); r];
+                for (step, quantity, mode) in self.places(step) {
+                    let Some(value) = self.get(step, quantity, mode) else {
+                        continue;
+                    };
+                    let value = leaf(quantity, value);
+                    let object = if quantity.is_of_mode() {
+                        &mut modes[mode]
+                    } else {
+                        &mut whole
+                    };
+                    insert(object, quantity.name(), value);
+                }
+                if modes.iter().any(|mode| !mode.is_empty()) {
+                    whole.insert("modes".into(), modes.into_iter().map(Value::Object).collect());
+                }
+                Value::Object(whole)
+            })
+            .collect()
+    }
+}
+
+/// Inserts a value under a name that may have a dot.
+fn insert(object: &mut Map<String, Value>, name: &str, value: Value) {
+    match name.split_once('.') {
+        None => {
+            object.insert(name.to_owned(), value);
+        }
+        Some((outer, inner)) => {
+            let nested = object.entry(outer).or_insert_with(|| Value::Object(Map::new()));
+            if let Value::Object(nested) = nested {
+                nested.insert(inner.to_owned(), value);
+            }
+        }
+    }
+}
+
+/// The numbers of a quantity as JSON: a number, a list, or a list of rows (one of length one, too).
+pub fn numbers_as_json<X: Serialize>(quantity: Quantity, dimensions: Dimensions, values: &[X]) -> Value {
+    let Dimensions { n, m, r, .. } = dimensions;
+    match quantity.rank() {
+        0 => json!(values[0]),
+        1 => json!(values),
+        _ => values.chunks(quantity.shape(n, m, r).1).map(|row| json!(row)).collect(),
+    }
+}
+
+impl Trace {
+    /// The list of steps as JSON.
+    pub fn steps_as_json(&self) -> Vec<Value> {
+        self.to_json(|quantity, values| numbers_as_json(quantity, self.dimensions, values))
+    }
+
+    /// Reads the list of steps of a trace or an answer, with patience. What is not finite becomes NaN.
+    ///
+    /// # Errors
+    ///
+    /// [`Invalid`] with the place, for a key that does not exist, a step that does not exist or comes twice, and a wrong count of numbers.
+    pub fn from_json(steps: &Value, dimensions: Dimensions) -> Result<Self, Invalid> {
+        let mut trace = Self::empty(dimensions);
+        let mut seen = vec![false; dimensions.steps];
+        for (index, step) in as_list(steps).iter().enumerate() {
+            let place = format!("steps[{index}]");
+            let object = as_object(step, &place)?;
+            let number = object.get("step").and_then(whole_number).ok_or_else(|| {
+                Invalid::new(
+                    Class::Shape,
+                    format!("{place}.step"),
+                    "is missing, or not a whole number",
+                )
+            })?;
+            if number == 0 || number > dimensions.steps {
+                let reason = format!("is {number}, but the problem has steps 1 to {}", dimensions.steps);
+                return Err(Invalid::new(Class::Shape, format!("{place}.step"), reason));
+            }
+            if std::mem::replace(&mut seen[number - 1], true) {
+                let reason = format!("is {number} a second time");
+                return Err(Invalid::new(Class::Shape, format!("{place}.step"), reason));
+            }
+            read_step(&mut trace, number, object, &place)?;
+        }
+        Ok(trace)
+    }
+}
+
+fn read_step(trace: &mut Trace, step: usize, object: &Map<String, Value>, place: &str) -> Result<(), Invalid> {
+    for (key, value) in object {
+        let place = format!("{place}.{key}");
+        match key.as_str() {
+            "step" => {}
+            "modes" => {
+                let modes = as_list(value);
+                let r = trace.dimensions.r;
+                if modes.len() != r {
+                    let reason = format!("has {} entries where there are {r} modes", modes.len());
+                    return Err(Invalid::new(Class::Shape, place, reason));
+                }
+                for (mode, value) in modes.iter().enumerate() {
+                    let place = format!("{place}[{mode}]");
+                    for (key, value) in as_object(value, &place)? {
+                        read_key(trace, (step, Some(mode)), key, value, &format!("{place}.{key}"))?;
+                    }
+                }
+            }
+            _ => read_key(trace, (step, None), key, value, &place)?,
+        }
+    }
+    Ok(())
+}
+
+/// Reads a quantity, or the two quantities under one key.
+fn read_key(
+    trace: &mut Trace,
+    at: (usize, Option<usize>),
+    key: &str,
+    value: &Value,
+    place: &str,
+) -> Result<(), Invalid> {
+    let of_this_kind = |quantity: &&Quantity| quantity.is_of_mode() == at.1.is_some();
+    let named = |name: &str| {
+        Quantity::ALL
+            .iter()
+            .filter(of_this_kind)
+            .find(|q| q.name() == name)
+            .copied()
+    };
+    let is_nested = Quantity::ALL
+        .iter()
+        .filter(of_this_kind)
+        .any(|quantity| quantity.name().split_once('.').is_some_and(|(outer, _)| outer == key));
+    if let Some(quantity) = named(key).filter(|_| !key.contains('.')) {
+        return read_numbers(trace, at, quantity, value, place);
+    }
+    if is_nested {
+        for (inner, value) in as_object(value, place)? {
+            let place = format!("{place}.{inner}");
+            let Some(quantity) = named(&format!("{key}.{inner}")) else {
+                return Err(unknown_key(place));
+            };
+            read_numbers(trace, at, quantity, value, &place)?;
+        }
+        return Ok(());
+    }
+    Err(unknown_key(place.to_owned()))
+}
+
+fn unknown_key(place: String) -> Invalid {
+    Invalid::new(Class::Format, place, "is not a key of a trace")
+}
+
+fn read_numbers(
+    trace: &mut Trace,
+    at: (usize, Option<usize>),
+    quantity: Quantity,
+    value: &Value,
+    place: &str,
+) -> Result<(), Invalid> {
+    let Dimensions { n, m, r, .. } = trace.dimensions;
+    let (rows, columns) = quantity.shape(n, m, r);
+    let mut numbers = Vec::new();
+    flatten(value, place, &mut numbers)?;
+    if numbers.is_empty() {
+        // An empty list is how some writers say that there is nothing.
+        return Ok(());
+    }
+    if numbers.len() == 1 && rows * columns > 1 && numbers[0].is_nan() {
+        // One null for the whole quantity: it is not finite as a whole.
+        numbers = vec![f64::NAN; rows * columns];
+    }
+    if numbers.len() != rows * columns {
+        let reason = format!("has {} numbers where {rows} × {columns} are needed", numbers.len());
+        return Err(Invalid::new(Class::Shape, place, reason));
+    }
+    trace.set(at.0, quantity, at.1.unwrap_or(0), numbers);
+    Ok(())
+}
+
+/// The numbers of a value in the order in which they stand; null and the words for what is not finite become NaN.
+fn flatten(value: &Value, place: &str, numbers: &mut Vec<f64>) -> Result<(), Invalid> {
+    match value {
+        Value::Null => numbers.push(f64::NAN),
+        Value::Number(number) => numbers.push(number.as_f64().unwrap_or(f64::NAN)),
+        Value::String(word) if is_not_finite(word) => numbers.push(f64::NAN),
+        Value::Array(list) => {
+            for (index, value) in list.iter().enumerate() {
+                flatten(value, &format!("{place}[{index}]"), numbers)?;
+            }
+        }
+        _ => return Err(Invalid::new(Class::Format, place, "is not a number")),
+    }
+    Ok(())
+}
+
+/// Whether a word is one that programs write for what is not finite.
+pub(super) fn is_not_finite(word: &str) -> bool {
+    let word = word.trim_start_matches(['-', '+']).to_ascii_lowercase();
+    ["nan", "inf", "infinity"].contains(&word.as_str())
+}
+
+/// A list, or one value as a list of one. A list of one list of objects is that list.
+fn as_list(value: &Value) -> Vec<&Value> {
+    match value {
+        Value::Array(list) => list.iter().collect(),
+        value => vec![value],
+    }
+}
+
+fn as_object<'a>(value: &'a Value, place: &str) -> Result<&'a Map<String, Value>, Invalid> {
+    value
+        .as_object()
+        .ok_or_else(|| Invalid::new(Class::Format, place, "is not an object"))
+}
+
+/// A whole number, written as 3 or as 3.0.
+fn whole_number(value: &Value) -> Option<usize> {
+    let number = value.as_f64()?;
+    let is_whole = number >= 0.0 && number.fract() == 0.0 && number < 1e9;
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a whole number below 10⁹"
+    )]
+    is_whole.then_some(number as usize)
+}
+
+/// Reads JSON in which NaN, Infinity and −Infinity may stand for numbers, as several writers have it.
+///
+/// # Errors
+///
+/// The reason, with line and column.
+pub fn read_json(text: &str) -> Result<Value, String> {
+    serde_json::from_str(&quote_not_finite(text)).map_err(|error| error.to_string())
+}
+
+/// Puts the words for what is not finite into quotes where they stand outside of strings.
+fn quote_not_finite(text: &str) -> String {
+    let mut quoted = String::with_capacity(text.len());
+    let mut rest = text;
+    let mut in_string = false;
+    while let Some(character) = rest.chars().next() {
+        if in_string && character == '\\' {
+            let end = rest.char_indices().nth(2).map_or(rest.len(), |(end, _)| end);
+            quoted.push_str(&rest[..end]);
+            rest = &rest[end..];
+            continue;
+        }
+        in_string ^= character == '"';
+        let word_end = rest
+            .find(|c: char| !c.is_ascii_alphabetic() && c != '-' && c != '+')
+            .unwrap_or(rest.len());
+        if !in_string && word_end > 0 && is_not_finite(&rest[..word_end]) {
+            quoted.push('"');
+            quoted.push_str(&rest[..word_end]);
+            quoted.push('"');
+            rest = &rest[word_end..];
+            continue;
+        }
+        quoted.push(character);
+        rest = &rest[character.len_utf8()..];
+    }
+    quoted
+}
