@@ -310,9 +310,9 @@ fn take_greatest_pivot<T: Real, const N: usize>(
     rows.remove(best)
 }
 
-/// An entry is finite when it minus itself is zero: an infinity, a value that is not a number and an undecided value are not.
+/// An entry is finite when it is decided: an infinity, a value that is not a number and an undecided value are not.
 pub fn is_finite<T: Field>(value: &T) -> bool {
-    value.clone() - value.clone() == T::zero()
+    value.is_decided()
 }
 
 /// All entries are finite; see [`is_finite`].

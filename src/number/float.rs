@@ -33,6 +33,10 @@ impl Field for f64 {
         f64::NAN
     }
 
+    fn is_decided(&self) -> bool {
+        self.is_finite()
+    }
+
     /// The nearest double, by the conversion of IEEE 754: equations ask for small integers at every step, and the way
     /// over [`Rational`] would cost more than the equation.
     fn integer(value: i64) -> Self {

@@ -12,6 +12,8 @@
 //! | [`Rational`]                          | [`Field`]                 | identities with no tolerance                    |
 //! | [`Surd`]                              | [`Roots`]                 | cubature points as the papers write them        |
 //! | [`RationalFunction`]                  | [`Roots`]                 | identities for all inputs, and for every n      |
+//! | [`Enclosure`]                         | [`Real`]                  | certified digits, and inequalities as theorems  |
+//! | [`RandomRounding`]                    | [`Real`]                  | how much of a difference is only arithmetic     |
 //!
 //! Three traits say what an equation needs, and an equation has the weakest bound it can live with:
 //! [`Field`] (+ − × ÷), [`Roots`] (the square roots of rationals, all that cubature points need) and [`Real`]
@@ -21,15 +23,19 @@
 //! panic: it is unequal to everything, itself included, and every operation on it gives it again.
 
 mod decimal;
+mod enclosure;
 mod float;
 mod operators;
 mod polynomial;
 mod radicals;
+mod random_rounding;
 mod rational;
 mod rational_function;
 mod surd;
 
+pub use enclosure::Enclosure;
 pub use polynomial::Polynomial;
+pub use random_rounding::RandomRounding;
 pub use rational::Rational;
 pub use rational_function::RationalFunction;
 pub use surd::Surd;
@@ -49,6 +55,11 @@ pub trait Field:
 
     /// The value that says that an operation had no answer. It is unequal to every value, itself included.
     fn undecided() -> Self;
+
+    /// Whether the value is a number: neither undecided nor infinite.
+    ///
+    /// Evidence: `only_a_number_is_decided`.
+    fn is_decided(&self) -> bool;
 
     /// The fraction `numerator / denominator` of two integers.
     fn ratio(numerator: i64, denominator: i64) -> Self {

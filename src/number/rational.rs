@@ -195,6 +195,10 @@ impl Field for Rational {
     fn undecided() -> Self {
         Self { value: None }
     }
+
+    fn is_decided(&self) -> bool {
+        self.value.is_some()
+    }
 }
 
 impl PartialEq for Rational {

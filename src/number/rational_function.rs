@@ -180,6 +180,10 @@ impl Field for RationalFunction {
     fn undecided() -> Self {
         Self::from_polynomial(Polynomial::undecided())
     }
+
+    fn is_decided(&self) -> bool {
+        Self::is_decided(self)
+    }
 }
 
 impl Roots for RationalFunction {

@@ -164,6 +164,11 @@ impl Surd {
         Self { terms }
     }
 
+    /// The terms, from square-free radicands to coefficients; `None` if undecided.
+    pub(super) fn terms(&self) -> Option<&Terms> {
+        self.terms.as_ref()
+    }
+
     /// The terms for printing, each with whether it is negative and the text of its magnitude, the rational one last.
     pub(super) fn printed_terms(&self) -> Vec<(bool, String)> {
         let printed = |(&radicand, coefficient): (&u64, &BigRational)| {
@@ -209,6 +214,10 @@ impl Field for Surd {
 
     fn undecided() -> Self {
         Self { terms: None }
+    }
+
+    fn is_decided(&self) -> bool {
+        self.terms.is_some()
     }
 }
 
