@@ -134,6 +134,40 @@ impl Bound {
         )
     }
 
+    /// A lower bound of the product of two lower bounds.
+    pub(super) fn times_below(self, other: Self) -> Self {
+        Self::below(
+            u128::from(self.mantissa) * u128::from(other.mantissa),
+            self.exponent + other.exponent,
+        )
+    }
+
+    /// A lower bound of the difference of a lower bound and an upper bound; zero if it is not positive.
+    pub(super) fn minus_below(self, other: Self) -> Self {
+        let gap = self.exponent - other.exponent;
+        let (large, small, exponent) = if other.is_zero() {
+            return self;
+        } else if gap > 64 {
+            // The other one is less than a unit of 2^(e−34), for a mantissa of 30 bits.
+            (u128::from(self.mantissa) << 34, 1, self.exponent - 34)
+        } else if gap >= 0 {
+            (u128::from(self.mantissa) << gap, u128::from(other.mantissa), other.exponent)
+        } else {
+            // Where the other one has the greater exponent, it is the greater one: mantissas are normalised.
+            return Self::ZERO;
+        };
+        Self::below(large.saturating_sub(small), exponent)
+    }
+
+    /// The greater of two.
+    pub(super) fn largest(self, other: Self) -> Self {
+        if self.compare(other) == Ordering::Less {
+            other
+        } else {
+            self
+        }
+    }
+
     /// A bound of the quotient, if the divisor is a lower bound and not zero.
     pub(super) fn over(self, divisor: Self) -> Option<Self> {
         if divisor.is_zero() {

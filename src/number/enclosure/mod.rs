@@ -34,7 +34,6 @@ mod series;
 use super::operators::{division_operators, ring_operators};
 use super::{Field, Rational, Real, Roots, Surd};
 use arithmetic::Ball;
-use bound::Bound;
 use dyadic::Dyadic;
 use num_traits::{One, Zero};
 use std::cell::Cell;

@@ -50,6 +50,10 @@ impl Enclosure {
     /// Evidence: `the_decimal_of_an_enclosure_is_the_nearest_one`.
     pub fn to_decimal(&self, digits: u32) -> Option<String> {
         let ball = self.ball.as_ref()?;
+        // Log₁₀ 2 = 0.301: so many more digits than bits are certain cannot be determined, and are not worth computing.
+        if !ball.is_exact() && i64::from(digits) > self.relative_bits().max(0) / 3 + 9 {
+            return None;
+        }
         let low = ball.lower().to_decimal(digits)?;
         (ball.is_exact() || ball.upper().to_decimal(digits)? == low).then_some(low)
     }
