@@ -8,3 +8,4 @@ pub mod run;
 pub mod setup;
 pub mod shape;
 pub mod trace;
+pub mod variant;

@@ -1,0 +1,81 @@
+//! Conventions: choices that the papers leave open and that change exact values.
+//!
+//! After this file the reader knows each value of `conventions` that a program may declare. None of them is wrong.
+
+use super::super::setup::Setup;
+use super::{draws_points, number, square_root, standard, weights};
+use crate::gaussian::log_density;
+use crate::matrix::ldl;
+use crate::number::Real;
+use nalgebra::SVector;
+
+/// Applies a convention; whether it is one.
+pub(super) fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+    let points = draws_points(setup);
+    let equations = &mut setup.equations;
+    match id {
+        // P = U Uᵀ
+        "square-root-upper" => {
+            if points {
+                equations.mixed_square_root = |_, _, now, j| square_root::upper(&now.mixed[j].covariance);
+                equations.predicted_square_root = |_, _, now, j| square_root::upper(&now.predicted[j].covariance);
+            }
+        }
+        // P = S S
+        "square-root-symmetric" => {
+            if points {
+                equations.mixed_square_root = |_, _, now, j| square_root::symmetric(&now.mixed[j].covariance);
+                equations.predicted_square_root = |_, _, now, j| square_root::symmetric(&now.predicted[j].covariance);
+            }
+        }
+        // θ̂ = atan2(Σₛ wₛ sin θₛ, Σₛ wₛ cos θₛ)
+        "angle-mean-vector" => {
+            if points {
+                equations.predicted_measurement = |problem, previous, now, j| {
+                    let usual = (standard(problem).predicted_measurement)(problem, previous, now, j);
+                    SVector::from_fn(|row, _| {
+                        if problem.measurement.is_angle(row) {
+                            mean_direction(weights(problem).0, &now.measured_points[j], row)
+                        } else {
+                            usual[row].clone()
+                        }
+                    })
+                }
+            }
+        }
+        // step 1: cⱼ = μⱼ, μᵢ∣ⱼ = 1 for i = j and 0 else
+        "first-step-unmixed" => {
+            equations.predicted_mode_probability = |problem, previous, now, j| {
+                if now.step == 1 {
+                    return previous.mode_probabilities[j].clone();
+                }
+                (standard(problem).predicted_mode_probability)(problem, previous, now, j)
+            };
+            equations.mixing_probability = |problem, previous, now, j, i| match (now.step, i == j) {
+                (1, true) => T::one(),
+                (1, false) => T::zero(),
+                _ => (standard(problem).mixing_probability)(problem, previous, now, j, i),
+            };
+        }
+        // ln L + (m/2) ln 2π
+        "log-likelihood-without-two-pi" => {
+            equations.log_likelihood = |_, _, now, j| {
+                let full = log_density(&now.innovations[j], &ldl(&now.innovation_covariances[j]));
+                let two_pi = T::pi() * T::integer(2);
+                full + number::<T>(M) * T::ln(&two_pi) / T::integer(2)
+            }
+        }
+        _ => return false,
+    }
+    true
+}
+
+/// The direction of the weighted sum of unit vectors.
+fn mean_direction<T: Real, const M: usize>(weights: &[T], values: &[SVector<T, M>], row: usize) -> T {
+    let (mut y, mut x) = (T::zero(), T::zero());
+    for (weight, value) in weights.iter().zip(values) {
+        y += weight.clone() * T::sin(&value[row]);
+        x += weight.clone() * T::cos(&value[row]);
+    }
+    T::atan2(&y, &x)
+}

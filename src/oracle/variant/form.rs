@@ -1,0 +1,262 @@
+//! Forms: other algebra for the same exact value.
+//!
+//! After this file the reader knows how else a right filter may be written; what differs is rounding alone.
+
+use super::super::setup::Setup;
+use super::{draws_points, is_linear, sum_of_covariance_weights, weights};
+use crate::filter::{cubature, kalman};
+use crate::gaussian::{Gaussian, mixture_covariance, mixture_mean};
+use crate::imm::Equations;
+use crate::imm::{Problem, Step};
+use crate::matrix::{check_positive_definite, cholesky, ldl, mirrored, solve};
+use crate::number::Real;
+use nalgebra::{SMatrix, SVector};
+
+/// Applies a form; whether it is one.
+pub(super) fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+    of_update(id, setup) || of_inverse(id, setup) || of_moments(id, setup) || of_probability(id, setup)
+}
+
+/// The updated covariance.
+fn of_update<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+    let points = draws_points(setup);
+    let entry = &mut setup.equations.updated_covariance;
+    match id {
+        // (I − W H) P⁻ (I − W H)ᵀ + W R Wᵀ; with points P⁻ − W Cᵀ − C Wᵀ + W S Wᵀ
+        "joseph-update" if points => {
+            *entry = |_, _, now, j| {
+                let (w, c, s) = (&now.gains[j], &now.cross_covariances[j], &now.innovation_covariances[j]);
+                &now.predicted[j].covariance - w * c.transpose() - c * w.transpose() + w * s * w.transpose()
+            }
+        }
+        "joseph-update" => {
+            *entry = |problem, _, now, j| {
+                let w = &now.gains[j];
+                let rest = rest(problem, now, j);
+                let noise = w * &problem.measurement_noise * w.transpose();
+                &rest * &now.predicted[j].covariance * rest.transpose() + noise
+            }
+        }
+        // P⁻ − W Cᵀ
+        "update-by-cross-covariance" => {
+            *entry = |_, _, now, j| &now.predicted[j].covariance - &now.gains[j] * now.cross_covariances[j].transpose();
+        }
+        // (I − W H) P⁻
+        "update-by-identity-minus-gain" => {
+            if !points {
+                *entry = |problem, _, now, j| rest(problem, now, j) * &now.predicted[j].covariance;
+            }
+        }
+        // (P⁻⁻¹ + Hᵀ R⁻¹ H)⁻¹
+        "information-update" => {
+            if !points {
+                *entry = |problem, _, now, j| {
+                    let h = problem.measurement.matrix();
+                    let information = h.transpose() * solve(&ldl(&problem.measurement_noise), &h);
+                    inverse(&(inverse(&now.predicted[j].covariance) + information))
+                }
+            }
+        }
+        // ½ (P + Pᵀ)
+        "symmetrised-by-the-average" => {
+            *entry = |_, _, now, j| {
+                let w = &now.gains[j];
+                let updated = &now.predicted[j].covariance - w * &now.innovation_covariances[j] * w.transpose();
+                (&updated + updated.transpose()) * T::ratio(1, 2)
+            }
+        }
+        _ => return false,
+    }
+    true
+}
+
+/// The gain and the likelihood, by an inverse or another factor.
+fn of_inverse<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+    let equations = &mut setup.equations;
+    match id {
+        // C · S⁻¹ and νᵀ · S⁻¹ · ν
+        "explicit-inverse" => {
+            equations.gain = |_, _, now, j| {
+                let s = &now.innovation_covariances[j];
+                check_positive_definite(&ldl(s))?;
+                Ok(&now.cross_covariances[j] * inverse(s))
+            };
+            equations.log_likelihood = |_, _, now, j| {
+                let (s, v) = (&now.innovation_covariances[j], &now.innovations[j]);
+                let logarithm = log_determinant_of_two_pi(&ldl(s).diagonal);
+                -((v.transpose() * inverse(s) * v)[(0, 0)].clone() + logarithm) / T::integer(2)
+            };
+        }
+        // S = L Lᵀ, ln|S| = 2 Σ ln Lᵢᵢ, νᵀ S⁻¹ ν = |L⁻¹ ν|²
+        "likelihood-by-cholesky" => {
+            equations.log_likelihood = |_, _, now, j| {
+                let Ok(root) = cholesky(&now.innovation_covariances[j]) else {
+                    return T::undecided();
+                };
+                let pivots = root.diagonal().map(|entry| entry.clone() * entry);
+                let mut distance = T::zero();
+                for entry in &forward(&root, &now.innovations[j]) {
+                    distance += entry.clone() * entry.clone();
+                }
+                -(distance + log_determinant_of_two_pi(&pivots)) / T::integer(2)
+            }
+        }
+        _ => return false,
+    }
+    true
+}
+
+/// Moments of points and mixtures.
+fn of_moments<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+    let points = draws_points(setup);
+    let is_raw = points && is_linear(&setup.problem) && sums_to_one(&setup.problem);
+    let equations = &mut setup.equations;
+    match id {
+        // zhu2016 (24) completed, (45), (48)
+        "raw-moments" => {
+            if is_raw {
+                let raw = Equations::raw_cubature();
+                equations.predicted_covariance = raw.predicted_covariance;
+                equations.innovation_covariance = raw.innovation_covariance;
+                equations.cross_covariance = raw.cross_covariance;
+            }
+        }
+        // Σᵢ wᵢ (Pⁱ + x̂ⁱ x̂ⁱᵀ) − x̂ x̂ᵀ
+        "mixture-by-raw-moments" => {
+            equations.mixed_covariance =
+                |_, previous, now, j| raw_mixture(&now.mixing_probabilities[j], &previous.updated, &now.mixed[j].mean);
+            equations.combined_covariance =
+                |_, _, now| raw_mixture(&now.mode_probabilities, &now.updated, &now.combined.mean);
+        }
+        // the last term first
+        "summation-reversed" => {
+            equations.mixed_mean = |_, previous, now, j| {
+                let (weights, estimates) = (reversed(&now.mixing_probabilities[j]), reversed(&previous.updated));
+                mixture_mean(&weights, &estimates)
+            };
+            equations.mixed_covariance = |_, previous, now, j| {
+                let (weights, estimates) = (reversed(&now.mixing_probabilities[j]), reversed(&previous.updated));
+                mixture_covariance(&weights, &estimates, &now.mixed[j].mean)
+            };
+            equations.combined_mean =
+                |_, _, now| mixture_mean(&reversed(&now.mode_probabilities), &reversed(&now.updated));
+            equations.combined_covariance = |_, _, now| {
+                let (weights, estimates) = (reversed(&now.mode_probabilities), reversed(&now.updated));
+                mixture_covariance(&weights, &estimates, &now.combined.mean)
+            };
+            if points {
+                reverse_points(equations);
+            }
+        }
+        // F P Fᵀ + Q with the two triangles as they come
+        "prediction-not-mirrored" => {
+            if !points {
+                equations.predicted_covariance = |problem, _, now, j| {
+                    let mode = &problem.modes[j];
+                    let f = &mode.transition;
+                    f * (&now.mixed[j].covariance * f.transpose()) + &mode.noise
+                }
+            }
+        }
+        // the moments of linear motion without points
+        "prediction-by-matrices" => {
+            equations.predicted_mean =
+                |problem, _, now, j| kalman::predicted_mean(&problem.modes[j].transition, &now.mixed[j].mean);
+            equations.predicted_covariance = |problem, _, now, j| {
+                let mode = &problem.modes[j];
+                kalman::predicted_covariance(&mode.transition, &now.mixed[j].covariance, &mode.noise)
+            };
+        }
+        _ => return false,
+    }
+    true
+}
+
+/// The mode probabilities.
+fn of_probability<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+    let equations = &mut setup.equations;
+    match id {
+        // Lⱼ itself, not relative to the greatest
+        "likelihoods-not-scaled" => {
+            equations.relative_likelihood = |_, _, now, j| T::exp(&now.log_likelihoods[j]);
+            equations.log_evidence = |_, _, now| T::ln(&now.evidence);
+        }
+        // μⱼ = exp( ln Lⱼ + ln cⱼ − ln Σᵢ exp(ln Lᵢ + ln cᵢ) )
+        "probabilities-by-log-sum-exp" => {
+            equations.mode_probability = |_, _, now, j| {
+                let predicted = &now.predicted_mode_probabilities[j];
+                if predicted.is_zero() {
+                    return T::zero();
+                }
+                let logarithm = now.log_likelihoods[j].clone() + T::ln(predicted);
+                T::exp(&(logarithm - now.log_evidence.clone()))
+            }
+        }
+        _ => return false,
+    }
+    true
+}
+
+/// The sums over points in reversed order.
+fn reverse_points<T: Real, const N: usize, const M: usize>(equations: &mut Equations<T, N, M>) {
+    equations.predicted_mean = |problem, _, now, j| {
+        cubature::weighted_mean(&reversed(weights(problem).0), &reversed(&now.propagated_points[j]))
+    };
+    equations.predicted_covariance = |problem, _, now, j| {
+        let (weights, points) = (reversed(weights(problem).1), reversed(&now.propagated_points[j]));
+        cubature::weighted_covariance(&weights, &points, &now.predicted[j].mean, &problem.modes[j].noise)
+    };
+}
+
+/// I − W H.
+fn rest<T: Real, const N: usize, const M: usize>(
+    problem: &Problem<T, N, M>,
+    now: &Step<T, N, M>,
+    j: usize,
+) -> SMatrix<T, N, N> {
+    SMatrix::identity() - &now.gains[j] * problem.measurement.matrix()
+}
+
+/// The inverse of a positive definite matrix, formed.
+fn inverse<T: Real, const D: usize>(matrix: &SMatrix<T, D, D>) -> SMatrix<T, D, D> {
+    mirrored(solve(&ldl(matrix), &SMatrix::<T, D, D>::identity()))
+}
+
+/// The solution y of L y = v.
+fn forward<T: Real, const D: usize>(lower: &SMatrix<T, D, D>, vector: &SVector<T, D>) -> SVector<T, D> {
+    let mut solution = vector.clone();
+    for i in 0..D {
+        for k in 0..i {
+            let known = lower[(i, k)].clone() * solution[k].clone();
+            solution[i] -= known;
+        }
+        solution[i] /= lower[(i, i)].clone();
+    }
+    solution
+}
+
+/// Σᵢ ln(2π dᵢ)
+fn log_determinant_of_two_pi<T: Real, const M: usize>(pivots: &SVector<T, M>) -> T {
+    let two_pi = T::pi() * T::integer(2);
+    let logarithms = pivots.iter().map(|pivot| T::ln(&(two_pi.clone() * pivot.clone())));
+    logarithms.fold(T::zero(), |sum, logarithm| sum + logarithm)
+}
+
+/// Σᵢ wᵢ (Pⁱ + x̂ⁱ x̂ⁱᵀ) − x̂ x̂ᵀ
+fn raw_mixture<T: Real, const N: usize>(
+    weights: &[T],
+    components: &[Gaussian<T, N>],
+    mean: &SVector<T, N>,
+) -> SMatrix<T, N, N> {
+    mixture_covariance(weights, components, &SVector::zeros()) - mean * mean.transpose()
+}
+
+/// Whether the weights for covariances sum to one, but for rounding.
+fn sums_to_one<T: Real, const N: usize, const M: usize>(problem: &Problem<T, N, M>) -> bool {
+    let excess: T = sum_of_covariance_weights::<T, N, M>(problem) - T::one();
+    excess.clone() * excess < T::ratio(1, 1_000_000_000_000)
+}
+
+fn reversed<V: Clone>(values: &[V]) -> Vec<V> {
+    values.iter().rev().cloned().collect()
+}

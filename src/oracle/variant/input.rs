@@ -1,0 +1,152 @@
+//! Variants of the problem: numbers that are read in another order, in another unit or not at all.
+//!
+//! After this file the reader knows how right equations give wrong values.
+
+use super::super::setup::Setup;
+use super::{diagonal, number};
+use crate::model::Measurement;
+use crate::number::Real;
+use nalgebra::SMatrix;
+
+/// Applies a variant of the problem; whether it is one.
+pub(super) fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+    of_matrices(id, setup) || of_modes(id, setup) || of_initial(id, setup) || of_measurements(id, setup)
+}
+
+/// The matrices.
+fn of_matrices<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+    let problem = &mut setup.problem;
+    match id {
+        "motion-by-columns" => {
+            for mode in &mut problem.modes {
+                mode.transition = mode.transition.transpose();
+            }
+        }
+        // the numbers of H, row after row, taken for its columns
+        "measurement-matrix-by-columns" => {
+            if let Measurement::Linear(h) = &mut problem.measurement {
+                let by_rows = h.transpose();
+                *h = SMatrix::from_fn(|row, column| by_rows.as_slice()[column * M + row].clone());
+            }
+        }
+        "process-noise-of-variances-alone" => {
+            for mode in &mut problem.modes {
+                mode.noise = diagonal(&mode.noise, T::clone);
+            }
+        }
+        "measurement-noise-of-variances-alone" => {
+            problem.measurement_noise = diagonal(&problem.measurement_noise, T::clone);
+        }
+        // √Rᵢᵢ on the diagonal
+        "measurement-noise-of-standard-deviations" => {
+            problem.measurement_noise = diagonal(&problem.measurement_noise, T::sqrt);
+        }
+        // Rᵢᵢ² on the diagonal
+        "measurement-noise-squared" => {
+            problem.measurement_noise = diagonal(&problem.measurement_noise, |variance| {
+                variance.clone() * variance.clone()
+            });
+        }
+        // the bearing's σ read as degrees
+        "bearing-noise-in-degrees" => {
+            let is_angle: Vec<bool> = (0..M).map(|row| problem.measurement.is_angle(row)).collect();
+            let unit = |row: usize| if is_angle[row] { degree() } else { T::one() };
+            let noise = &problem.measurement_noise;
+            problem.measurement_noise =
+                SMatrix::from_fn(|row, column| noise[(row, column)].clone() * unit(row) * unit(column));
+        }
+        _ => return false,
+    }
+    true
+}
+
+/// The order of the modes.
+fn of_modes<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+    match id {
+        // F and Q of the last mode first
+        "modes-reversed" => setup.problem.modes.reverse(),
+        "initial-estimates-reversed" => setup.initial.modes.reverse(),
+        "initial-probabilities-reversed" => setup.initial.mode_probabilities.reverse(),
+        _ => return false,
+    }
+    true
+}
+
+/// The initial estimate.
+fn of_initial<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+    let initial = &mut setup.initial;
+    match id {
+        "initial-probabilities-equal" => {
+            let modes = initial.modes.len();
+            initial.mode_probabilities = vec![T::one() / number::<T>(modes); modes];
+        }
+        "initial-estimate-of-the-first-mode" => {
+            let first = initial.modes[0].clone();
+            initial
+                .modes
+                .iter_mut()
+                .for_each(|estimate| estimate.clone_from(&first));
+        }
+        "initial-covariance-of-variances-alone" => {
+            for estimate in &mut initial.modes {
+                estimate.covariance = diagonal(&estimate.covariance, T::clone);
+            }
+        }
+        "initial-covariance-of-standard-deviations" => {
+            for estimate in &mut initial.modes {
+                estimate.covariance = diagonal(&estimate.covariance, T::sqrt);
+            }
+        }
+        "initial-covariance-ignored" => {
+            for estimate in &mut initial.modes {
+                estimate.covariance = SMatrix::identity();
+            }
+        }
+        "initial-mean-ignored" => {
+            for estimate in &mut initial.modes {
+                estimate.mean.fill(T::zero());
+            }
+        }
+        _ => return false,
+    }
+    true
+}
+
+/// The measurements.
+fn of_measurements<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+    let measurements = &mut setup.measurements;
+    match id {
+        // z(k+1) at step k; the last step keeps its own
+        "measurement-of-the-next-step" => {
+            for k in 1..measurements.len() {
+                measurements[k - 1] = measurements[k].clone();
+            }
+        }
+        // z(k−1) at step k; the first step keeps its own
+        "measurement-of-the-step-before" => {
+            for k in (1..measurements.len()).rev() {
+                measurements[k] = measurements[k - 1].clone();
+            }
+        }
+        "measurement-entries-reversed" => {
+            for z in measurements.iter_mut().flatten() {
+                *z = nalgebra::SVector::from_fn(|row, _| z[M - 1 - row].clone());
+            }
+        }
+        // θ π / 180 of a bearing that is in radians already
+        "degrees-for-radians" => {
+            for z in measurements.iter_mut().flatten() {
+                for row in (0..M).filter(|&row| setup.problem.measurement.is_angle(row)) {
+                    z[row] *= degree();
+                }
+            }
+        }
+        _ => return false,
+    }
+    true
+}
+
+/// A degree in radians.
+fn degree<T: Real>() -> T {
+    T::pi() / T::integer(180)
+}

@@ -1,0 +1,284 @@
+//! Variants of the mixing: the chain, the mixing probabilities and the mixed estimates.
+//!
+//! After this file the reader knows how the two indices of a Markov chain, and the means about which a spread is taken, go astray.
+
+use super::super::setup::Setup;
+use crate::filter::kalman;
+use crate::gaussian::{Gaussian, mixture_covariance, mixture_mean};
+use crate::imm::probability::{mixing_probability, predicted_mode_probability};
+use crate::imm::{Problem, Step};
+use crate::number::Real;
+use nalgebra::SMatrix;
+
+/// Applies a variant of the mixing; whether it is one.
+pub(super) fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+    of_chain(id, setup)
+        || of_mixing_probability(id, setup)
+        || of_mixed_estimate(id, setup)
+        || of_mixed_covariance(id, setup)
+}
+
+/// The predicted mode probabilities.
+fn of_chain<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+    let equations = &mut setup.equations;
+    match id {
+        // cⱼ = Σᵢ pⱼᵢ μᵢ, and the mixing probabilities by the same matrix
+        "transition-transposed" => setup.problem.transition = transposed(&setup.problem.transition),
+        // cⱼ = μⱼ; the mixing probabilities are those of the chain
+        "chain-skipped" => {
+            equations.predicted_mode_probability = |_, previous, _, j| previous.mode_probabilities[j].clone();
+            equations.mixing_probability = |problem, previous, _, j, i| mixing(problem, previous, i, j);
+        }
+        // no chain and no mixing: filters side by side
+        "modes-without-interaction" => {
+            equations.predicted_mode_probability = |_, previous, _, j| previous.mode_probabilities[j].clone();
+            equations.mixing_probability = |_, _, _, j, i| identity(i, j);
+        }
+        _ => return false,
+    }
+    true
+}
+
+/// The mixing probabilities of previous mode i in current mode j.
+fn of_mixing_probability<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+    let entry = &mut setup.equations.mixing_probability;
+    match id {
+        // pⱼᵢ μᵢ / cⱼ
+        "transition-transposed-in-mixing" => {
+            *entry = |problem, previous, now, j, i| {
+                let (chain, predicted) = (transposed(&problem.transition), &now.predicted_mode_probabilities[j]);
+                mixing_probability(&chain, &previous.mode_probabilities, predicted, i, j)
+            }
+        }
+        // pᵢⱼ μᵢ
+        "mixing-not-normalised" => {
+            *entry =
+                |problem, previous, _, j, i| problem.transition[i][j].clone() * previous.mode_probabilities[i].clone()
+        }
+        // μⱼ∣ᵢ in the place of μᵢ∣ⱼ
+        "mixing-indices-swapped" => *entry = |problem, previous, _, j, i| mixing(problem, previous, j, i),
+        // pᵢⱼ cᵢ / cⱼ
+        "mixing-with-predicted-probabilities" => {
+            *entry = |problem, _, now, j, i| {
+                let predicted = &now.predicted_mode_probabilities;
+                mixing_probability(&problem.transition, predicted, &predicted[j], i, j)
+            }
+        }
+        // pᵢⱼ μᵢ / Σⱼ pᵢⱼ μᵢ = pᵢⱼ
+        "mixing-normalised-by-rows" => *entry = |problem, _, _, j, i| problem.transition[i][j].clone(),
+        // pᵢⱼ / Σᵢ pᵢⱼ
+        "mixing-without-mode-probabilities" => {
+            *entry = |problem, _, _, j, i| {
+                let ones = vec![T::one(); problem.modes.len()];
+                let sum = predicted_mode_probability(&problem.transition, &ones, j);
+                mixing_probability(&problem.transition, &ones, &sum, i, j)
+            }
+        }
+        _ => return false,
+    }
+    true
+}
+
+/// The mixed estimates, mean and covariance.
+fn of_mixed_estimate<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+    let equations = &mut setup.equations;
+    match id {
+        // each mode starts from its own estimate
+        "mixing-skipped" => {
+            equations.mixed_mean = |_, previous, _, j| previous.updated[j].mean.clone();
+            equations.mixed_covariance = |_, previous, _, j| previous.updated[j].covariance.clone();
+        }
+        // all modes start from the combined estimate
+        "common-mixing" => {
+            equations.mixed_mean = |_, previous, _, _| previous.combined.mean.clone();
+            equations.mixed_covariance = |_, previous, _, _| previous.combined.covariance.clone();
+        }
+        // x̂⁰ʲ = Σᵢ μⱼ∣ᵢ x̂ⁱ
+        "mixed-with-transposed-probabilities" => {
+            equations.mixed_mean =
+                |problem, previous, _, j| mixture_mean(&swapped(problem, previous, j), &previous.updated);
+            equations.mixed_covariance = |problem, previous, now, j| {
+                let mean = &now.mixed[j].mean;
+                mixture_covariance(&swapped(problem, previous, j), &previous.updated, mean)
+            };
+        }
+        // what was mixed for the modes before j stands in the place of their estimates
+        "mixing-in-place" => {
+            equations.mixed_mean = |_, previous, now, j| {
+                let estimates = overwritten(previous, now, j);
+                mixture_mean(&now.mixing_probabilities[j], &estimates)
+            };
+            equations.mixed_covariance = |_, previous, now, j| {
+                let estimates = overwritten(previous, now, j);
+                mixture_covariance(&now.mixing_probabilities[j], &estimates, &now.mixed[j].mean)
+            };
+        }
+        // each mode predicts its own estimate, and the predictions are mixed
+        "mixing-after-prediction" => {
+            equations.mixed_mean = |_, previous, _, j| previous.updated[j].mean.clone();
+            equations.mixed_covariance = |_, previous, _, j| previous.updated[j].covariance.clone();
+            equations.predicted_mean =
+                |problem, _, now, j| mixture_mean(&now.mixing_probabilities[j], &own_predictions(problem, now));
+            equations.predicted_covariance = |problem, _, now, j| {
+                let predictions = own_predictions(problem, now);
+                mixture_covariance(&now.mixing_probabilities[j], &predictions, &now.predicted[j].mean)
+            };
+        }
+        _ => return false,
+    }
+    true
+}
+
+/// The mixed covariances.
+fn of_mixed_covariance<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+    let entry = &mut setup.equations.mixed_covariance;
+    match id {
+        // P⁰ʲ = Σᵢ μᵢ∣ⱼ Pⁱ
+        "mixed-spread-omitted" => {
+            *entry = |_, previous, now, j| without_spread(&now.mixing_probabilities[j], &previous.updated);
+        }
+        // x̂ⁱ − x̂
+        "mixed-spread-about-combined-mean" => {
+            *entry = |_, previous, now, j| {
+                mixture_covariance(&now.mixing_probabilities[j], &previous.updated, &previous.combined.mean)
+            }
+        }
+        // x̂ⁱ − x̂ʲ
+        "mixed-spread-about-own-mean" => {
+            *entry = |_, previous, now, j| {
+                let own = &previous.updated[j].mean;
+                mixture_covariance(&now.mixing_probabilities[j], &previous.updated, own)
+            }
+        }
+        // x̂ⁱ − x̂⁰ⁱ
+        "mixed-spread-about-previous-index" => {
+            *entry = |problem, previous, now, j| {
+                let mut sum = SMatrix::zeros();
+                for (i, estimate) in previous.updated.iter().enumerate() {
+                    let weights: Vec<T> = (0..problem.modes.len())
+                        .map(|l| mixing(problem, previous, l, i))
+                        .collect();
+                    let mean = mixture_mean(&weights, &previous.updated);
+                    let one = std::slice::from_ref(estimate);
+                    sum += mixture_covariance(&now.mixing_probabilities[j][i..=i], one, &mean);
+                }
+                sum
+            }
+        }
+        // P⁰ʲ = Pʲ
+        "covariances-not-mixed" => *entry = |_, previous, _, j| previous.updated[j].covariance.clone(),
+        // Σᵢ μᵢ∣ⱼ² · [ … ]
+        "mixed-covariance-weights-squared" => {
+            *entry = |_, previous, now, j| {
+                let weights = squared(&now.mixing_probabilities[j]);
+                mixture_covariance(&weights, &previous.updated, &now.mixed[j].mean)
+            }
+        }
+        // the scalar (x̂ⁱ − x̂⁰ʲ)ᵀ(x̂ⁱ − x̂⁰ʲ) added to every entry
+        "mixed-spread-inner-product" => {
+            *entry = |_, previous, now, j| {
+                let (weights, mean) = (&now.mixing_probabilities[j], &now.mixed[j].mean);
+                with_inner_products(weights, &previous.updated, mean)
+            }
+        }
+        _ => return false,
+    }
+    true
+}
+
+/// μᵢ∣ⱼ = pᵢⱼ μᵢ / Σᵢ pᵢⱼ μᵢ, whatever stands in the record for cⱼ.
+fn mixing<T: Real, const N: usize, const M: usize>(
+    problem: &Problem<T, N, M>,
+    previous: &Step<T, N, M>,
+    i: usize,
+    j: usize,
+) -> T {
+    let (chain, probabilities) = (&problem.transition, &previous.mode_probabilities);
+    mixing_probability(
+        chain,
+        probabilities,
+        &predicted_mode_probability(chain, probabilities, j),
+        i,
+        j,
+    )
+}
+
+/// The mixing probabilities with their indices swapped.
+fn swapped<T: Real, const N: usize, const M: usize>(
+    problem: &Problem<T, N, M>,
+    previous: &Step<T, N, M>,
+    j: usize,
+) -> Vec<T> {
+    (0..problem.modes.len())
+        .map(|i| mixing(problem, previous, j, i))
+        .collect()
+}
+
+/// The updated estimates of the step before, those of modes below j overwritten by the mixed ones.
+fn overwritten<T: Real, const N: usize, const M: usize>(
+    previous: &Step<T, N, M>,
+    now: &Step<T, N, M>,
+    j: usize,
+) -> Vec<Gaussian<T, N>> {
+    let mut estimates = previous.updated.clone();
+    estimates[..j].clone_from_slice(&now.mixed[..j]);
+    estimates
+}
+
+/// The predictions of the estimates from which the modes start.
+fn own_predictions<T: Real, const N: usize, const M: usize>(
+    problem: &Problem<T, N, M>,
+    now: &Step<T, N, M>,
+) -> Vec<Gaussian<T, N>> {
+    let modes = problem.modes.iter().zip(&now.mixed);
+    let predictions = modes.map(|(mode, start)| Gaussian {
+        mean: kalman::predicted_mean(&mode.transition, &start.mean),
+        covariance: kalman::predicted_covariance(&mode.transition, &start.covariance, &mode.noise),
+    });
+    predictions.collect()
+}
+
+/// Σᵢ wᵢ Pⁱ.
+pub(super) fn without_spread<T: Real, const N: usize>(
+    weights: &[T],
+    components: &[Gaussian<T, N>],
+) -> SMatrix<T, N, N> {
+    let mut sum = SMatrix::zeros();
+    for (weight, component) in weights.iter().zip(components) {
+        sum += &component.covariance * weight.clone();
+    }
+    sum
+}
+
+/// Σᵢ wᵢ [ Pⁱ + (x̂ⁱ − x̂)ᵀ(x̂ⁱ − x̂) ], the scalar added to every entry.
+pub(super) fn with_inner_products<T: Real, const N: usize>(
+    weights: &[T],
+    components: &[Gaussian<T, N>],
+    mean: &nalgebra::SVector<T, N>,
+) -> SMatrix<T, N, N> {
+    let mut sum = without_spread(weights, components);
+    for (weight, component) in weights.iter().zip(components) {
+        let deviation = &component.mean - mean;
+        let mut square = T::zero();
+        for entry in &deviation {
+            square += entry.clone() * entry.clone();
+        }
+        sum += SMatrix::from_element(square * weight.clone());
+    }
+    sum
+}
+
+/// The squares of weights.
+pub(super) fn squared<T: Real>(weights: &[T]) -> Vec<T> {
+    weights.iter().map(|weight| weight.clone() * weight.clone()).collect()
+}
+
+fn transposed<T: Real>(chain: &[Vec<T>]) -> Vec<Vec<T>> {
+    (0..chain.len())
+        .map(|i| chain.iter().map(|row| row[i].clone()).collect())
+        .collect()
+}
+
+fn identity<T: Real>(i: usize, j: usize) -> T {
+    if i == j { T::one() } else { T::zero() }
+}

@@ -1,0 +1,244 @@
+//! The catalogue of variants: the filter with some entries of its table exchanged, or with another problem.
+//!
+//! After this folder the reader knows every mistake, convention and form by which another program's values can be explained. A variant
+//! has two halves: a row of `spec/variants.toml` says in words what it is, and an arm of one of these files makes it. Every arm is a few
+//! lines and generic over the number system, so that a variant can be run wherever the filter can.
+//!
+//! | file            | whose equation is varied                                             |
+//! |-----------------|----------------------------------------------------------------------|
+//! | `input`         | none: the problem was read wrongly                                   |
+//! | `mixing`        | predicted mode probabilities, mixing probabilities, mixed estimates  |
+//! | `prediction`    | predicted estimates                                                  |
+//! | `points`        | the points and weights of a rule                                     |
+//! | `measurement`   | predicted measurement, innovation and their covariances              |
+//! | `bearing`       | the measurement function of range and bearing, and its angles        |
+//! | `update`        | gain and updated estimates                                           |
+//! | `missed`        | what is done without a detection                                     |
+//! | `likelihood`    | log-likelihood                                                       |
+//! | `probability`   | mode probabilities                                                   |
+//! | `combination`   | combined estimates                                                   |
+//! | `convention`    | choices that the papers leave open                                   |
+//! | `square_root`   | of these the square root of a covariance                             |
+//! | `form`          | other algebra for the same exact value                               |
+//!
+//! An entry computes its value from the values that stand before it in the record, as the program that makes the mistake would: so it can
+//! be run along another program's values too. Two variants compose when they exchange different entries; of the same entry the second wins.
+
+mod bearing;
+mod combination;
+mod convention;
+mod form;
+mod input;
+mod likelihood;
+mod measurement;
+mod missed;
+mod mixing;
+mod points;
+mod prediction;
+mod probability;
+mod square_root;
+mod update;
+
+use super::setup::Setup;
+use crate::imm::{Equations, Problem, Quantity, Step};
+use crate::model::Measurement;
+use crate::number::Real;
+use nalgebra::SMatrix;
+use serde::de::{Deserializer, Error};
+use serde::{Deserialize, Serialize};
+use std::sync::LazyLock;
+
+/// What a variant is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Kind {
+    /// Wrong: printed in a paper, or seen in programs.
+    Mistake,
+    /// A choice that the papers leave open and that changes exact values.
+    Convention,
+    /// Other algebra for the same exact value; never wrong.
+    Form,
+}
+
+impl Kind {
+    /// The word for it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Mistake => "mistake",
+            Self::Convention => "convention",
+            Self::Form => "form",
+        }
+    }
+}
+
+/// Where a variant can make a difference.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Applies {
+    /// Everywhere.
+    All,
+    /// In filters with points.
+    Points,
+    /// In Kalman filters.
+    Kalman,
+    /// Where a bearing is measured.
+    Angles,
+    /// Where a detection is missing.
+    Missed,
+    /// Where there are several modes.
+    #[serde(rename = "several modes")]
+    SeveralModes,
+}
+
+impl Applies {
+    /// Whether it can make a difference here. Where it cannot, the variant leaves every value as it is.
+    pub fn to<T: Real, const N: usize, const M: usize>(self, setup: &Setup<T, N, M>) -> bool {
+        let problem = &setup.problem;
+        match self {
+            Self::All => true,
+            Self::Points => problem.rule.is_some(),
+            Self::Kalman => problem.rule.is_none(),
+            Self::Angles => (0..M).any(|row| problem.measurement.is_angle(row)),
+            Self::Missed => setup.measurements.iter().any(Option::is_none),
+            Self::SeveralModes => problem.modes.len() > 1,
+        }
+    }
+}
+
+/// A row of the catalogue.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Variant {
+    /// Its name; never changed.
+    pub id: String,
+    /// What it is.
+    pub kind: Kind,
+    /// The quantity in whose equation it is made, the first that it can change.
+    #[serde(deserialize_with = "quantity")]
+    pub quantity: Quantity,
+    /// Where it can make a difference.
+    pub applies: Applies,
+    /// What was done, said to the one who did it.
+    pub about: String,
+    /// What can be seen of it.
+    pub effect: String,
+    /// Where it is found.
+    pub source: String,
+    /// The case that is meant for it.
+    pub case: String,
+    /// Of a convention: its key in problem files.
+    pub convention: Option<String>,
+    /// Of a convention: the value of that key.
+    pub value: Option<String>,
+}
+
+/// A quantity by its name.
+fn quantity<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Quantity, D::Error> {
+    let name = String::deserialize(deserializer)?;
+    let named = Quantity::ALL.into_iter().find(|quantity| quantity.name() == name);
+    named.ok_or_else(|| D::Error::custom(format!("there is no quantity {name:?}")))
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CatalogueFile {
+    variant: Vec<Variant>,
+}
+
+/// Reads a catalogue.
+///
+/// # Errors
+///
+/// What is wrong with the text, and where.
+pub fn read(text: &str) -> Result<Vec<Variant>, toml::de::Error> {
+    toml::from_str::<CatalogueFile>(text).map(|file| file.variant)
+}
+
+/// All variants, in the order of `spec/variants.toml`. The file is part of the program, and a test reads it: one that could not be read
+/// would leave the catalogue empty.
+pub fn catalogue() -> &'static [Variant] {
+    static CATALOGUE: LazyLock<Vec<Variant>> =
+        LazyLock::new(|| read(include_str!("../../../spec/variants.toml")).unwrap_or_default());
+    &CATALOGUE
+}
+
+/// The variant of a name.
+pub fn find(id: &str) -> Option<&'static Variant> {
+    catalogue().iter().find(|variant| variant.id == id)
+}
+
+/// Makes a run one of a variant; whether there is one of this name. Several may be applied, one after the other.
+pub fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+    input::apply(id, setup)
+        || mixing::apply(id, setup)
+        || prediction::apply(id, setup)
+        || points::apply(id, setup)
+        || measurement::apply(id, setup)
+        || bearing::apply(id, setup)
+        || update::apply(id, setup)
+        || missed::apply(id, setup)
+        || likelihood::apply(id, setup)
+        || probability::apply(id, setup)
+        || combination::apply(id, setup)
+        || convention::apply(id, setup)
+        || form::apply(id, setup)
+}
+
+/// The filter's own table, for an entry that uses the right equation on other values.
+fn standard<T: Real, const N: usize, const M: usize>(problem: &Problem<T, N, M>) -> Equations<T, N, M> {
+    if problem.rule.is_some() {
+        Equations::cubature()
+    } else {
+        Equations::kalman()
+    }
+}
+
+/// Whether the filter draws points.
+fn draws_points<T, const N: usize, const M: usize>(setup: &Setup<T, N, M>) -> bool {
+    setup.problem.rule.is_some()
+}
+
+/// Whether the measurement is a matrix times the state.
+fn is_linear<T, const N: usize, const M: usize>(problem: &Problem<T, N, M>) -> bool {
+    matches!(problem.measurement, Measurement::Linear(_))
+}
+
+/// The rule's weights for means and for covariances; none without a rule.
+fn weights<T, const N: usize, const M: usize>(problem: &Problem<T, N, M>) -> (&[T], &[T]) {
+    match &problem.rule {
+        Some(rule) => (&rule.weights, &rule.covariance_weights),
+        None => (&[], &[]),
+    }
+}
+
+/// Sum of the rule's weights for covariances.
+fn sum_of_covariance_weights<T: Real, const N: usize, const M: usize>(problem: &Problem<T, N, M>) -> T {
+    let (_, weights) = weights(problem);
+    weights.iter().cloned().fold(T::zero(), |sum, weight| sum + weight)
+}
+
+/// The probabilities by which the estimate of this step is combined. At step 0, whose combined estimate is computed too, these are the
+/// only ones.
+fn or_initial<'a, T, const N: usize, const M: usize>(now: &'a Step<T, N, M>, weights: &'a [T]) -> &'a [T] {
+    if now.step == 0 {
+        &now.mode_probabilities
+    } else {
+        weights
+    }
+}
+
+/// A number of modes, rows or points as a number of the number system.
+fn number<T: Real>(count: usize) -> T {
+    T::integer(i64::try_from(count).unwrap_or(i64::MAX))
+}
+
+/// The diagonal of a matrix, each entry changed, and zeros beside it.
+fn diagonal<T: Real, const D: usize>(matrix: &SMatrix<T, D, D>, entry: fn(&T) -> T) -> SMatrix<T, D, D> {
+    SMatrix::from_fn(|row, column| {
+        if row == column {
+            entry(&matrix[(row, row)])
+        } else {
+            T::zero()
+        }
+    })
+}

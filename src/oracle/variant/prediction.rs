@@ -1,0 +1,157 @@
+//! Variants of the prediction: what moves, by which matrix, and with which noise.
+//!
+//! After this file the reader knows the mistakes that can be made in F P Fᵀ + Q.
+
+use super::super::setup::Setup;
+use super::{draws_points, standard, sum_of_covariance_weights, weights};
+use crate::filter::{cubature, kalman, raw};
+use crate::matrix::mirrored;
+use crate::number::{Field, Real};
+use nalgebra::SMatrix;
+
+/// Applies a variant of the prediction; whether it is one.
+pub(super) fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+    of_noise(id, setup) || of_mean(id, setup) || of_covariance(id, setup)
+}
+
+/// The process noise.
+fn of_noise<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+    let modes = &mut setup.problem.modes;
+    match id {
+        "process-noise-omitted" => modes.iter_mut().for_each(|mode| mode.noise = SMatrix::zeros()),
+        "process-noise-doubled" => {
+            for mode in modes {
+                mode.noise = &mode.noise + &mode.noise;
+            }
+        }
+        "process-noise-of-the-next-mode" => {
+            let mut noises: Vec<_> = modes.iter().map(|mode| mode.noise.clone()).collect();
+            noises.rotate_left(1);
+            for (mode, noise) in modes.iter_mut().zip(noises) {
+                mode.noise = noise;
+            }
+        }
+        "process-noise-of-the-first-mode" => {
+            let first = modes[0].noise.clone();
+            modes.iter_mut().for_each(|mode| mode.noise.clone_from(&first));
+        }
+        // F (P + Q) Fᵀ
+        "process-noise-before-motion" => {
+            setup.equations.predicted_covariance = |problem, _, now, j| {
+                let mode = &problem.modes[j];
+                let covariance = &now.mixed[j].covariance + &mode.noise;
+                kalman::predicted_covariance(&mode.transition, &covariance, &SMatrix::zeros())
+            }
+        }
+        // Σₛ wₛ [ (X*ₛ − x̂⁻)(X*ₛ − x̂⁻)ᵀ + Q ], where the weights do not sum to one
+        "process-noise-inside-the-sum" => {
+            if draws_points(setup) {
+                setup.equations.predicted_covariance = |problem, _, now, j| {
+                    let (points, mean) = (&now.propagated_points[j], &now.predicted[j].mean);
+                    let noise = &problem.modes[j].noise * sum_of_covariance_weights(problem);
+                    cubature::weighted_covariance(weights(problem).1, points, mean, &noise)
+                }
+            }
+        }
+        _ => return false,
+    }
+    true
+}
+
+/// The predicted mean, and what follows from it.
+fn of_mean<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+    let equations = &mut setup.equations;
+    match id {
+        // what was mixed is not used: F x̂ʲ, F Pʲ Fᵀ + Q
+        "prediction-from-own-estimate" => {
+            equations.predicted_mean = |problem, previous, _, j| {
+                kalman::predicted_mean(&problem.modes[j].transition, &previous.updated[j].mean)
+            };
+            equations.predicted_covariance = |problem, previous, _, j| {
+                let mode = &problem.modes[j];
+                kalman::predicted_covariance(&mode.transition, &previous.updated[j].covariance, &mode.noise)
+            };
+        }
+        // x̂⁻ = x̂⁰ʲ
+        "mean-not-moved" => equations.predicted_mean = |_, _, now, j| now.mixed[j].mean.clone(),
+        // x̂⁻ = F F x̂⁰ʲ
+        "motion-applied-twice" => {
+            equations.predicted_mean = |problem, previous, now, j| {
+                let once = (standard(problem).predicted_mean)(problem, previous, now, j);
+                kalman::predicted_mean(&problem.modes[j].transition, &once)
+            }
+        }
+        "motion-of-the-next-mode" => rotate_motions(setup),
+        "motion-of-the-first-mode" => {
+            let first = setup.problem.modes[0].transition.clone();
+            for mode in &mut setup.problem.modes {
+                mode.transition.clone_from(&first);
+            }
+        }
+        _ => return false,
+    }
+    true
+}
+
+/// The predicted covariance.
+fn of_covariance<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+    let points = draws_points(setup);
+    let entry = &mut setup.equations.predicted_covariance;
+    match id {
+        // P⁻ = Fᵀ P F + Q
+        "prediction-transposed" => {
+            if !points {
+                *entry = |problem, _, now, j| {
+                    let mode = &problem.modes[j];
+                    let transposed = mode.transition.transpose();
+                    kalman::predicted_covariance(&transposed, &now.mixed[j].covariance, &mode.noise)
+                }
+            }
+        }
+        // P⁻ = P⁰ + Q
+        "covariance-not-moved" => {
+            *entry = |problem, _, now, j| mirrored(&now.mixed[j].covariance + &problem.modes[j].noise);
+        }
+        // P⁻ = F P⁰ + Q
+        "motion-on-one-side" => {
+            *entry = |problem, _, now, j| {
+                let mode = &problem.modes[j];
+                mirrored(&mode.transition * &now.mixed[j].covariance + &mode.noise)
+            }
+        }
+        // zhu2016 (24) as printed: Σₛ wₛ X*ₛ X*ₛᵀ
+        "raw-predicted-covariance" => {
+            if points {
+                *entry = |problem, _, now, j| raw::raw_second_moment(weights(problem).1, &now.propagated_points[j]);
+            }
+        }
+        // the points' deviations from the centre x̂⁰ʲ that was not moved
+        "prediction-spread-about-mixed-mean" => {
+            if points {
+                *entry = |problem, _, now, j| {
+                    let (points, mean) = (&now.propagated_points[j], &now.mixed[j].mean);
+                    cubature::weighted_covariance(weights(problem).1, points, mean, &problem.modes[j].noise)
+                }
+            }
+        }
+        // F P Fᵀ + Q of the combined P, while the means are the modes' own
+        "prediction-of-combined-covariance" => {
+            *entry = |problem, previous, _, j| {
+                let mode = &problem.modes[j];
+                kalman::predicted_covariance(&mode.transition, &previous.combined.covariance, &mode.noise)
+            }
+        }
+        _ => return false,
+    }
+    true
+}
+
+/// Mode j moves as mode j + 1 does, the last as the first.
+fn rotate_motions<T: Field, const N: usize, const M: usize>(setup: &mut Setup<T, N, M>) {
+    let modes = &mut setup.problem.modes;
+    let mut motions: Vec<_> = modes.iter().map(|mode| mode.transition.clone()).collect();
+    motions.rotate_left(1);
+    for (mode, motion) in modes.iter_mut().zip(motions) {
+        mode.transition = motion;
+    }
+}

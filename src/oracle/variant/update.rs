@@ -1,0 +1,170 @@
+//! Variants of the update: the gain, the updated mean and the updated covariance.
+//!
+//! After this file the reader knows the mistakes that can be made in C S⁻¹, x̂⁻ + W ν and P⁻ − W S Wᵀ.
+
+use super::super::setup::Setup;
+use super::{diagonal, draws_points};
+use crate::filter::{kalman, update};
+use crate::imm::equations::Factored;
+use crate::imm::{Problem, Step};
+use crate::matrix::{check_positive_definite, ldl, mirrored, solve};
+use crate::number::Real;
+use nalgebra::{SMatrix, SVector};
+
+/// Applies a variant of the update; whether it is one.
+pub(super) fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+    of_gain(id, setup) || of_mean(id, setup) || of_covariance(id, setup)
+}
+
+/// The gain.
+fn of_gain<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+    let points = draws_points(setup);
+    let entry = &mut setup.equations.gain;
+    match id {
+        // derbez2000 (2) as printed: P⁰ʲ Hᵀ (H P⁰ʲ Hᵀ + R)⁻¹
+        "gain-of-mixed-covariance" => {
+            if !points {
+                *entry = |problem, _, now, j| {
+                    let (h, covariance) = (problem.measurement.matrix(), &now.mixed[j].covariance);
+                    let s = kalman::innovation_covariance(&h, covariance, &problem.measurement_noise);
+                    gain(&kalman::cross_covariance(covariance, &h), &s)
+                }
+            }
+        }
+        // C (S − R)⁻¹
+        "gain-without-measurement-noise" => {
+            *entry = |problem, _, now, j| {
+                let s = &now.innovation_covariances[j] - &problem.measurement_noise;
+                gain(&now.cross_covariances[j], &s)
+            }
+        }
+        // C diag(S)⁻¹
+        "gain-of-variances-alone" => {
+            *entry = |_, _, now, j| {
+                let s = diagonal(&now.innovation_covariances[j], T::clone);
+                gain(&now.cross_covariances[j], &s)
+            }
+        }
+        // C (1/Sᵢⱼ)
+        "gain-by-entrywise-inverse" => {
+            *entry = |_, _, now, j| {
+                let inverses = now.innovation_covariances[j].map(|entry| T::one() / entry);
+                Ok(&now.cross_covariances[j] * inverses)
+            }
+        }
+        // S⁻¹ C, which has a shape only for n = m
+        "gain-factors-exchanged" => {
+            if N == M {
+                *entry = |_, _, now, j| {
+                    let c = SMatrix::<T, M, M>::from_fn(|row, column| now.cross_covariances[j][(row, column)].clone());
+                    let solution = solve(&ldl(&now.innovation_covariances[j]), &c);
+                    Ok(SMatrix::from_fn(|row, column| solution[(row, column)].clone()))
+                }
+            }
+        }
+        // W of step k−1
+        "gain-of-the-step-before" => {
+            *entry = |_, previous, now, j| {
+                let factors = ldl(&now.innovation_covariances[j]);
+                check_positive_definite(&factors)?;
+                Ok(if now.step == 1 {
+                    update::gain(&now.cross_covariances[j], &factors)
+                } else {
+                    previous.gains[j].clone()
+                })
+            }
+        }
+        _ => return false,
+    }
+    true
+}
+
+/// The updated mean.
+fn of_mean<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+    let entry = &mut setup.equations.updated_mean;
+    match id {
+        // x̂⁻ − W ν
+        "update-subtracted" => *entry = |_, _, now, j| &now.predicted[j].mean - &now.gains[j] * &now.innovations[j],
+        // x̂⁰ʲ + W ν
+        "update-of-the-mixed-mean" => {
+            *entry = |_, _, now, j| update::updated_mean(&now.mixed[j].mean, &now.gains[j], &now.innovations[j]);
+        }
+        // x̂⁻ of all modes + W ν
+        "update-of-the-combined-prediction" => {
+            *entry =
+                |_, _, now, j| update::updated_mean(&now.combined_prediction.mean, &now.gains[j], &now.innovations[j])
+        }
+        // x̂⁻ + W z
+        "update-by-the-measurement" => {
+            *entry = |_, _, now, j| {
+                let undecided = || SVector::from_fn(|_, _| T::undecided());
+                let z = now.measurement.clone().unwrap_or_else(undecided);
+                update::updated_mean(&now.predicted[j].mean, &now.gains[j], &z)
+            }
+        }
+        _ => return false,
+    }
+    true
+}
+
+/// The updated covariance.
+fn of_covariance<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+    let entry = &mut setup.equations.updated_covariance;
+    match id {
+        // P⁻
+        "covariance-not-updated" => *entry = |_, _, now, j| now.predicted[j].covariance.clone(),
+        // P⁻ + W S Wᵀ
+        "covariance-update-added" => {
+            *entry = |_, _, now, j| {
+                let s = -now.innovation_covariances[j].clone();
+                update::updated_covariance(&now.predicted[j].covariance, &now.gains[j], &s)
+            }
+        }
+        // P⁰ʲ − W S Wᵀ
+        "covariance-update-of-mixed" => {
+            *entry = |_, _, now, j| {
+                let s = &now.innovation_covariances[j];
+                update::updated_covariance(&now.mixed[j].covariance, &now.gains[j], s)
+            }
+        }
+        // P⁻ − W Wᵀ
+        "covariance-update-without-s" => {
+            *entry = |_, _, now, j| {
+                update::updated_covariance(&now.predicted[j].covariance, &now.gains[j], &SMatrix::identity())
+            }
+        }
+        // P⁻ − W R Wᵀ
+        "covariance-update-by-noise" => {
+            *entry = |problem, _, now, j| {
+                let noise = &problem.measurement_noise;
+                update::updated_covariance(&now.predicted[j].covariance, &now.gains[j], noise)
+            }
+        }
+        // (I − W H) P⁻ (I − W H)ᵀ, which is P⁻ − W Cᵀ − C Wᵀ + W (S − R) Wᵀ
+        "joseph-update-without-noise" => *entry = |problem, _, now, j| joseph(problem, now, j, &T::zero()),
+        // (I − W H) P⁻ (I − W H)ᵀ + 2 W R Wᵀ
+        "joseph-update-noise-doubled" => *entry = |problem, _, now, j| joseph(problem, now, j, &T::integer(2)),
+        _ => return false,
+    }
+    true
+}
+
+/// The Joseph form with so many times the noise: P⁻ − W Cᵀ − C Wᵀ + W (S − R) Wᵀ + times · W R Wᵀ.
+fn joseph<T: Real, const N: usize, const M: usize>(
+    problem: &Problem<T, N, M>,
+    now: &Step<T, N, M>,
+    j: usize,
+    times: &T,
+) -> SMatrix<T, N, N> {
+    let (w, c) = (&now.gains[j], &now.cross_covariances[j]);
+    let noise = &problem.measurement_noise * (times.clone() - T::one());
+    let s = &now.innovation_covariances[j] + noise;
+    mirrored(&now.predicted[j].covariance - w * c.transpose() - c * w.transpose() + w * s * w.transpose())
+}
+
+/// C S⁻¹ with an S that must be positive definite.
+fn gain<T: Real, const N: usize, const M: usize>(c: &SMatrix<T, N, M>, s: &SMatrix<T, M, M>) -> Factored<T, N, M> {
+    let factors = ldl(s);
+    check_positive_definite(&factors)?;
+    Ok(update::gain(c, &factors))
+}
