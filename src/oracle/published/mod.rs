@@ -1,0 +1,153 @@
+//! The problems of the certified cases.
+//!
+//! After this folder the reader knows every published problem, what it is for, and which mistakes it is there to see. No two do the same
+//! job. Most have generic numbers; where something is special, the flags and the purpose say so.
+//!
+//! - `draft`, `scene`: how a problem is written down, and the scenes that most are cut from;
+//! - `equations`, `rules`: single equations, and each rule by itself;
+//! - `steps`: whole steps, one and several, with nothing special;
+//! - `chain`: the Markov chain, missed detections, outliers;
+//! - `angles`: bearings around ±π, strong curvature, conventions;
+//! - `numbers`: large positions, other units, singular covariances;
+//! - `runs`: the papers' scenarios;
+//! - `rejected`: problems that must be refused.
+
+mod angles;
+mod chain;
+mod draft;
+mod equations;
+mod numbers;
+mod rejected;
+mod rules;
+mod runs;
+mod scene;
+mod steps;
+
+pub use rejected::Rejected;
+
+use super::problem::ProblemFile;
+
+/// All problems that must be run, in the order in which a reader, or a new filter, meets them best: from single equations to runs.
+pub fn all() -> Vec<ProblemFile> {
+    [
+        equations::all(),
+        rules::all(),
+        steps::all(),
+        chain::all(),
+        angles::all(),
+        numbers::all(),
+        runs::all(),
+    ]
+    .concat()
+}
+
+/// All problems that must be refused, each with the class of the reason and the reason.
+pub fn rejected() -> Vec<Rejected> {
+    rejected::all()
+}
+
+/// Every flag, and what a problem with it is like.
+pub const FLAGS: [(&str, &str); 42] = [
+    (
+        "single-equation",
+        "All is trivial but one equation, or one group of them.",
+    ),
+    ("mixing", "It shows the mixing of the modes' estimates."),
+    ("likelihood", "It shows the likelihoods of the modes."),
+    ("combination", "It shows the combination of the modes' estimates."),
+    ("update", "It shows prediction and update of one filter."),
+    ("rule", "It shows the points and weights of a rule."),
+    ("single-step", "There is one step, in which everything happens."),
+    ("sequence", "There are a few steps, each of which needs those before."),
+    ("run", "There are many steps."),
+    ("published-scenario", "Modes, chain and noise are those of a paper."),
+    (
+        "full-correlation",
+        "No covariance has a zero: nothing can hide behind one.",
+    ),
+    (
+        "zeros",
+        "Covariances have zeros, as papers have them: some mistakes cannot be seen.",
+    ),
+    (
+        "row-order",
+        "Matrices are far from symmetric: reading them by columns is seen.",
+    ),
+    (
+        "transition-order",
+        "The chain is not symmetric and the probabilities are unequal: a transposed transition matrix is seen.",
+    ),
+    (
+        "spread",
+        "The modes' means differ by about a standard deviation: what becomes of their spread is seen.",
+    ),
+    (
+        "determinant",
+        "The modes' innovation covariances differ in size: a likelihood without its determinant is seen.",
+    ),
+    ("one-mode", "There is one mode: the filter is the one inside it."),
+    (
+        "identical-modes",
+        "All modes are the same: only the chain moves the probabilities.",
+    ),
+    (
+        "as-kalman",
+        "All is linear: every rule must give the Kalman filter's values.",
+    ),
+    (
+        "not-stationary",
+        "The initial probabilities are not those that the chain tends to.",
+    ),
+    ("first-step", "What is done at the first step is seen."),
+    ("unreachable", "A mode has the predicted probability zero."),
+    ("absorbing", "A mode cannot be left."),
+    (
+        "floor",
+        "Likelihoods or probabilities are so small that a floor under them is seen.",
+    ),
+    ("outlier", "Every likelihood underflows a double."),
+    ("missed-detection", "At least one step has no detection."),
+    (
+        "missed-in-a-row",
+        "Several steps one after the other have no detection.",
+    ),
+    ("wrap", "A difference of bearings has to be wrapped."),
+    (
+        "straddling",
+        "Bearings of the points of one prediction lie on both sides of the cut at pi.",
+    ),
+    ("mirror", "It is the mirror image of another problem."),
+    (
+        "components",
+        "What and where the measured entries and the sensor are is unusual.",
+    ),
+    (
+        "fresh-points",
+        "The process noise is large: points that are not drawn afresh from the prediction are seen.",
+    ),
+    ("negative-weight", "The rule has a negative weight."),
+    (
+        "cancellation",
+        "Weights of the rule are large and nearly cancel: a right filter loses digits.",
+    ),
+    (
+        "curved",
+        "The measurement is strongly curved over the width of an estimate.",
+    ),
+    (
+        "square-root",
+        "Another square root of a covariance gives another answer, which is a convention.",
+    ),
+    (
+        "angle-mean",
+        "Another mean of angles gives another answer, which is a convention.",
+    ),
+    (
+        "far-from-origin",
+        "Positions are larger than their deviations by a factor of a million.",
+    ),
+    ("units", "Numbers are very large or very small."),
+    ("nearly-singular", "A covariance is nearly singular."),
+    ("singular-noise", "The process noise is singular, which it may be."),
+    ("rejected", "It must be refused."),
+];

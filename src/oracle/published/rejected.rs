@@ -1,0 +1,146 @@
+//! Problems that must be refused.
+//!
+//! After this file the reader knows one or two defects of each class. Each problem is a published one in which exactly one thing is wrong,
+//! so that a program that refuses it refuses it for that.
+
+use super::draft::Draft;
+use super::scene::{plane, radar};
+use crate::oracle::invalid::Class;
+use crate::oracle::problem::{FilterFile, MeasurementFile, ProblemFile};
+
+/// A problem, the class of the reason for which it must be refused, and the reason.
+pub type Rejected = (ProblemFile, Class, &'static str);
+
+/// The problems of this file.
+pub(super) fn all() -> Vec<Rejected> {
+    [shapes(), probabilities(), covariances(), unknown()].concat()
+}
+
+/// step.n4-m2.two-modes with a change.
+fn linear(id: &str, class: Class, reason: &'static str, change: impl FnOnce(&mut ProblemFile)) -> Rejected {
+    refused(plane().keep(&[0, 1]), "step.n4-m2.two-modes", id, class, reason, change)
+}
+
+/// step.cubature-5 with a change.
+fn polar(id: &str, class: Class, reason: &'static str, change: impl FnOnce(&mut ProblemFile)) -> Rejected {
+    refused(radar("cubature-5"), "step.cubature-5", id, class, reason, change)
+}
+
+fn refused(
+    draft: Draft,
+    from: &str,
+    id: &str,
+    class: Class,
+    reason: &'static str,
+    change: impl FnOnce(&mut ProblemFile),
+) -> Rejected {
+    let about = format!("The problem {from}, but {reason}. It must be refused.");
+    let problem = draft.with(change).named(id, &["rejected", "full-correlation"], &about);
+    (problem, class, reason)
+}
+
+fn shapes() -> Vec<Rejected> {
+    vec![
+        linear(
+            "rejected.shape.matrix",
+            Class::Shape,
+            "the last row of the first F has three entries where the state has four",
+            |problem| problem.modes[0].transition[3].truncate(3),
+        ),
+        linear(
+            "rejected.shape.measurement",
+            Class::Shape,
+            "the measurement has three entries where R is 2 x 2",
+            |problem| problem.measurements[0].z = Some(vec![160.0, -35.0, 1.0]),
+        ),
+        linear(
+            "rejected.shape.modes",
+            Class::Shape,
+            "there are three initial probabilities for two modes",
+            |problem| problem.initial.mode_probabilities = vec![0.5, 0.3, 0.2],
+        ),
+    ]
+}
+
+fn probabilities() -> Vec<Rejected> {
+    vec![
+        linear(
+            "rejected.probability.sum",
+            Class::NotAProbability,
+            "the first row of the transition matrix sums to 1.01",
+            |problem| problem.transition[0] = vec![0.9, 0.11],
+        ),
+        linear(
+            "rejected.probability.negative",
+            Class::NotAProbability,
+            "an initial probability is negative, although they sum to one",
+            |problem| problem.initial.mode_probabilities = vec![1.25, -0.25],
+        ),
+    ]
+}
+
+fn covariances() -> Vec<Rejected> {
+    vec![
+        linear(
+            "rejected.symmetric.initial",
+            Class::NotSymmetric,
+            "an initial covariance has one entry that its mirror image has not",
+            |problem| problem.initial.modes[1].covariance[0][2] += 0.5,
+        ),
+        linear(
+            "rejected.symmetric.noise",
+            Class::NotSymmetric,
+            "R is not symmetric",
+            |problem| problem.noise[1][0] = -29.7,
+        ),
+        linear(
+            "rejected.definite.initial",
+            Class::NotPositiveDefinite,
+            "an initial covariance has a variance that is too small for its correlations",
+            |problem| problem.initial.modes[0].covariance[1][1] = 0.25,
+        ),
+        linear(
+            "rejected.definite.process-noise",
+            Class::NotPositiveDefinite,
+            "the second Q has a negative variance",
+            |problem| problem.modes[1].noise[3][3] = -0.81,
+        ),
+    ]
+}
+
+fn unknown() -> Vec<Rejected> {
+    vec![
+        polar(
+            "rejected.unknown.rule",
+            Class::Unknown,
+            "its filter has the rule cubature-7, which does not exist",
+            |problem| {
+                problem.filter = FilterFile::Cubature {
+                    rule: "cubature-7".to_owned(),
+                };
+            },
+        ),
+        polar(
+            "rejected.unknown.component",
+            Class::Unknown,
+            "its second component is an elevation, which does not exist",
+            |problem| {
+                if let MeasurementFile::RangeBearing { components, .. } = &mut problem.measurement {
+                    "elevation".clone_into(&mut components[1]);
+                }
+            },
+        ),
+        polar(
+            "rejected.unknown.convention",
+            Class::Unknown,
+            "its square root is of a kind that does not exist",
+            |problem| "by-guess".clone_into(&mut problem.conventions.square_root),
+        ),
+        polar(
+            "rejected.angle.degrees",
+            Class::Angle,
+            "its bearing is in degrees",
+            |problem| problem.measurements[0].z = Some(vec![207.0, -23.5]),
+        ),
+    ]
+}

@@ -1,0 +1,408 @@
+//! Goal: the published problems are what their purposes and flags say.
+//!
+//! Method: every problem is checked and run in doubles, and each flag whose meaning can be computed is computed from the problem or from its
+//! run. Kind of evidence: oracle. That the expected values are right is not the question here.
+
+use immaculate::imm::Quantity;
+use immaculate::number::Real;
+use immaculate::oracle::problem::{FilterFile, MeasurementFile, ProblemFile, Rows};
+use immaculate::oracle::published::{FLAGS, all, rejected};
+use immaculate::oracle::run::Computed;
+use immaculate::oracle::shape::{self, Work};
+use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Digits that every common reader of JSON reads rightly.
+const DIGITS: usize = 15;
+
+#[test]
+fn ids_are_unique_and_of_lower_case_words() {
+    let mut ids = BTreeSet::new();
+    for problem in everything() {
+        let id = &problem.id;
+        let is_word = |word: &str| {
+            let mut letters = word.chars();
+            !word.is_empty() && letters.all(|c| c.is_ascii_lowercase() || c.is_ascii_digit())
+        };
+        assert!(id.split(['.', '-']).all(is_word), "{id}");
+        assert!(id.contains('.') && id.len() <= 40, "{id}");
+        assert!(ids.insert(id.clone()), "{id} twice");
+    }
+}
+
+#[test]
+fn every_flag_is_explained_and_every_explained_flag_is_used() {
+    let mut used = BTreeSet::new();
+    for problem in everything() {
+        let flags: BTreeSet<String> = problem.flags.iter().cloned().collect();
+        assert_eq!(flags.len(), problem.flags.len(), "{}: a flag twice", problem.id);
+        used.extend(flags);
+    }
+    let explained: BTreeSet<String> = FLAGS.iter().map(|(flag, _)| (*flag).to_owned()).collect();
+    assert_eq!(explained.len(), FLAGS.len(), "a flag is explained twice");
+    assert_eq!(used, explained);
+    for (flag, sentence) in FLAGS {
+        assert!(sentence.ends_with('.'), "{flag}: {sentence}");
+    }
+}
+
+#[test]
+fn every_problem_has_a_purpose_and_numbers_of_its_own() {
+    let mut purposes = BTreeSet::new();
+    let mut contents = BTreeMap::new();
+    for problem in everything() {
+        let is_sentence = problem.about.len() > 40 && problem.about.ends_with('.') && !problem.about.contains("  ");
+        assert!(is_sentence, "{}: {}", problem.id, problem.about);
+        assert!(
+            purposes.insert(problem.about.clone()),
+            "{}: the purpose of another",
+            problem.id
+        );
+        let (id, bare) = (problem.id.clone(), bare(&problem).to_string());
+        if let Some(other) = contents.insert(bare, id.clone()) {
+            panic!("{id} is {other} over again");
+        }
+    }
+}
+
+#[test]
+fn there_are_many_short_problems_and_few_long_ones() {
+    let problems = all();
+    let long = problems.iter().filter(|problem| problem.measurements.len() > 6).count();
+    assert!((70..120).contains(&problems.len()), "{}", problems.len());
+    assert!(long < 12, "{long}");
+    for problem in &problems {
+        let steps = problem.measurements.len();
+        let expected = match steps {
+            1 => ["single-step", "single-equation"].as_slice(),
+            2..=6 => &["sequence"],
+            _ => &["run"],
+        };
+        let is_told = expected.iter().any(|flag| has(problem, flag));
+        assert!(is_told, "{}: {steps} steps", problem.id);
+    }
+}
+
+#[test]
+fn no_number_has_more_than_fifteen_significant_digits() {
+    for problem in everything() {
+        let text = serde_json::to_string(&problem).unwrap();
+        assert_eq!(ProblemFile::parse(&text).unwrap(), problem, "{}: read back", problem.id);
+        let mut numbers = Vec::new();
+        collect(&serde_json::from_str(&text).unwrap(), &mut numbers);
+        for number in numbers {
+            let mantissa = number.split('e').next().unwrap_or_default();
+            let digits: String = mantissa.chars().filter(char::is_ascii_digit).collect();
+            let significant = digits.trim_matches('0').len();
+            assert!(significant <= DIGITS, "{}: {number}", problem.id);
+            assert_ne!(number, "-0.0", "{}", problem.id);
+        }
+    }
+}
+
+#[test]
+fn every_problem_runs_in_doubles() {
+    for problem in all() {
+        if let Err(error) = problem.check() {
+            panic!("{}: {error}", problem.id);
+        }
+        let run = run(&problem);
+        assert!(
+            run.values.failures.is_empty(),
+            "{}: {:?}",
+            problem.id,
+            run.values.failures
+        );
+        for (step, quantity, mode) in run.values.values.all_places() {
+            let Some(values) = run.values.values.get(step, quantity, mode) else {
+                continue;
+            };
+            let is_finite = values.iter().all(|value| value.is_finite());
+            assert!(is_finite, "{}: step {step}, {}", problem.id, quantity.name());
+        }
+    }
+}
+
+#[test]
+fn every_rejected_problem_is_rejected_for_its_reason() {
+    let classes = rejected().into_iter().map(|(problem, class, reason)| {
+        let error = problem.check().expect_err(&problem.id);
+        assert_eq!(error.class, class, "{}: {error}", problem.id);
+        assert!(problem.about.contains(reason), "{}: {reason}", problem.id);
+        class.name()
+    });
+    let classes: BTreeSet<_> = classes.collect();
+    let documented = [
+        "shape",
+        "not-a-probability",
+        "not-symmetric",
+        "not-positive-definite",
+        "unknown",
+        "angle",
+    ];
+    assert_eq!(classes, BTreeSet::from(documented));
+}
+
+#[test]
+fn a_rejected_problem_differs_from_a_published_one_in_exactly_one_thing() {
+    let published = all();
+    for (problem, ..) in rejected() {
+        let of = published
+            .iter()
+            .find(|other| problem.about.contains(&format!("The problem {},", other.id)))
+            .unwrap_or_else(|| panic!("{} names its origin", problem.id));
+        let places = differences("", &bare(&problem), &bare(of));
+        assert_eq!(places.len(), 1, "{}: {places:?}", problem.id);
+    }
+}
+
+#[test]
+fn covariances_have_no_zeros_unless_it_is_said() {
+    for problem in everything() {
+        let initial = problem.initial.modes.iter().map(|estimate| &estimate.covariance);
+        let noises = problem.modes.iter().map(|mode| &mode.noise);
+        let mut entries = initial.chain(noises).chain([&problem.noise]).flatten().flatten();
+        let has_zero = entries.any(|&entry| entry == 0.0);
+        assert_eq!(has_zero, has(&problem, "zeros"), "{}", problem.id);
+        assert_eq!(has_zero, !has(&problem, "full-correlation"), "{}", problem.id);
+    }
+}
+
+#[test]
+fn flags_of_modes_and_chains_are_true() {
+    for problem in all() {
+        let id = &problem.id;
+        let r = problem.modes.len();
+        assert_eq!(has(&problem, "one-mode"), r == 1, "{id}");
+        let is_symmetric = |chain: &Rows| (0..r).all(|i| (0..r).all(|j| chain[i][j] == chain[j][i]));
+        let asymmetric = !is_symmetric(&problem.transition);
+        assert!(
+            asymmetric || !has(&problem, "transition-order"),
+            "{id}: a symmetric chain"
+        );
+        let is_same = problem
+            .modes
+            .iter()
+            .all(|mode| (&mode.transition, &mode.noise) == first(&problem));
+        let is_same = is_same
+            && problem
+                .initial
+                .modes
+                .iter()
+                .all(|mode| *mode == problem.initial.modes[0]);
+        assert_eq!(has(&problem, "identical-modes"), is_same && r > 1, "{id}");
+        let is_absorbing = (0..r).any(|i| problem.transition[i][i] == 1.0) && asymmetric;
+        assert_eq!(has(&problem, "absorbing"), is_absorbing, "{id}");
+        let means: BTreeSet<String> = problem.initial.modes.iter().map(|e| format!("{:?}", e.mean)).collect();
+        assert!(means.len() == r || !has(&problem, "spread"), "{id}: equal means");
+
+        let run = run(&problem);
+        let reached = run.each(Quantity::PredictedModeProbabilities);
+        let is_unreachable = reached.iter().any(|(.., probabilities)| probabilities.contains(&0.0));
+        assert_eq!(has(&problem, "unreachable"), is_unreachable, "{id}");
+    }
+}
+
+#[test]
+fn flags_of_detections_and_outliers_are_true() {
+    for problem in all() {
+        let id = &problem.id;
+        let missed: Vec<bool> = problem.measurements.iter().map(|entry| entry.z.is_none()).collect();
+        let says = has(&problem, "missed-detection") || has(&problem, "single-equation");
+        assert!(says || !missed.contains(&true), "{id}");
+        assert!(missed.contains(&true) || !has(&problem, "missed-detection"), "{id}");
+        let in_a_row = missed.windows(2).any(|pair| pair == [true, true]);
+        assert_eq!(has(&problem, "missed-in-a-row"), in_a_row, "{id}");
+
+        let run = run(&problem);
+        let mut greatest = BTreeMap::new();
+        for (step, _, value) in run.each(Quantity::LogLikelihood) {
+            let best: &mut f64 = greatest.entry(step).or_insert(f64::NEG_INFINITY);
+            *best = best.max(value[0]);
+        }
+        let underflows = greatest.values().any(|&best| libm::exp(best) == 0.0);
+        assert_eq!(has(&problem, "outlier"), underflows, "{id}: {greatest:?}");
+    }
+}
+
+#[test]
+fn flags_of_filters_and_angles_are_true() {
+    for problem in all() {
+        let id = &problem.id;
+        let is_linear = matches!(problem.measurement, MeasurementFile::Linear { .. });
+        let has_points = !matches!(problem.filter, FilterFile::Kalman {});
+        assert_eq!(has(&problem, "as-kalman"), is_linear && has_points, "{id}");
+
+        let run = run(&problem);
+        assert_eq!(has(&problem, "negative-weight"), run.has_negative_weight, "{id}");
+        let mut wraps = false;
+        let mut straddles = false;
+        for (step, mode, innovation) in run.each(Quantity::Innovation) {
+            let of = |quantity| run.values.values.get(step, quantity, mode).unwrap();
+            let predicted = of(Quantity::PredictedMeasurement);
+            let s = of(Quantity::InnovationCovariance);
+            let z = problem.measurements[step - 1].z.as_ref().unwrap();
+            let m = z.len();
+            for row in (0..m).filter(|&row| problem.is_bearing(row)) {
+                wraps |= (z[row] - predicted[row] - innovation[row]).abs() > 1.0;
+                // A point of every rule in use lies beyond one standard deviation.
+                straddles |= predicted[row].abs() + s[row * m + row].sqrt() > f64::pi();
+            }
+        }
+        assert_eq!(has(&problem, "wrap"), wraps, "{id}");
+        assert_eq!(has(&problem, "straddling"), straddles, "{id}");
+    }
+}
+
+#[test]
+fn equal_distances_are_equal_and_determinants_are_not() {
+    for (id, ratio) in [
+        ("likelihood.equal-distance.scalar", 4.0),
+        ("likelihood.equal-distance.plane", 16.0),
+    ] {
+        let run = run(&of(id));
+        let likelihoods: Vec<f64> = run
+            .each(Quantity::LogLikelihood)
+            .iter()
+            .map(|(.., value)| value[0])
+            .collect();
+        // Only the logarithms round: two of them, each of a number below 20.
+        let difference = likelihoods[0] - likelihoods[1];
+        approx::assert_abs_diff_eq!(difference, 0.5 * Real::ln(&ratio), epsilon = 8.0 * f64::EPSILON);
+    }
+}
+
+#[test]
+fn mirror_images_have_the_same_likelihoods() {
+    let original = run(&of("wrap.counter-clockwise")).each(Quantity::LogLikelihood);
+    for (id, relative) in [("wrap.clockwise", 1e-11), ("wrap.mirrored-to-zero", 1e-9)] {
+        // The first image is exact, and five steps lose a few digits; the bearings of the second have twelve digits.
+        let image = run(&of(id)).each(Quantity::LogLikelihood);
+        for (a, b) in original.iter().zip(&image) {
+            approx::assert_relative_eq!(a.2[0], b.2[0], max_relative = relative);
+        }
+    }
+}
+
+#[test]
+fn every_rule_gives_the_kalman_filter_where_all_is_linear() {
+    let linear = all().into_iter().filter(|problem| has(problem, "as-kalman"));
+    for mut problem in linear {
+        let with_points = run(&problem);
+        problem.filter = FilterFile::Kalman {};
+        let plain = run(&problem);
+        let mut last = (0, f64::NAN, f64::NAN);
+        for (a, b) in with_points
+            .each(Quantity::LogLikelihood)
+            .iter()
+            .zip(&plain.each(Quantity::LogLikelihood))
+        {
+            // Tens of steps, each with a Cholesky factor, of covariances of condition 10⁶ or so.
+            if (a.2[0] - b.2[0]).abs() > 1e-8 {
+                last = (a.0, a.2[0], b.2[0]);
+            }
+        }
+        assert_eq!(last.0, 0, "{}: {last:?}", problem.id);
+    }
+}
+
+// What the tests ask of a problem and of its run
+
+/// All problems, those that must be rejected among them.
+fn everything() -> Vec<ProblemFile> {
+    let rejected = rejected().into_iter().map(|(problem, ..)| problem);
+    all().into_iter().chain(rejected).collect()
+}
+
+fn of(id: &str) -> ProblemFile {
+    all().into_iter().find(|problem| problem.id == id).unwrap()
+}
+
+fn has(problem: &ProblemFile, flag: &str) -> bool {
+    problem.flags.iter().any(|has| has == flag)
+}
+
+fn first(problem: &ProblemFile) -> (&Rows, &Rows) {
+    (&problem.modes[0].transition, &problem.modes[0].noise)
+}
+
+/// A problem as JSON without its name and purpose.
+fn bare(problem: &ProblemFile) -> Value {
+    let mut value = serde_json::to_value(problem).unwrap();
+    let object = value.as_object_mut().unwrap();
+    for key in ["id", "about", "flags"] {
+        object.remove(key);
+    }
+    value
+}
+
+/// The numbers of a JSON value as they are written.
+fn collect(value: &Value, numbers: &mut Vec<String>) {
+    match value {
+        Value::Number(number) => numbers.push(number.to_string()),
+        Value::Array(list) => list.iter().for_each(|value| collect(value, numbers)),
+        Value::Object(map) => map.values().for_each(|value| collect(value, numbers)),
+        _ => {}
+    }
+}
+
+/// The places at which two JSON values differ; a list of numbers is one place.
+fn differences(place: &str, a: &Value, b: &Value) -> Vec<String> {
+    match (a, b) {
+        (Value::Object(a), Value::Object(b)) if a.keys().eq(b.keys()) => a
+            .iter()
+            .flat_map(|(key, a)| differences(&format!("{place}.{key}"), a, &b[key]))
+            .collect(),
+        (Value::Array(a), Value::Array(b)) if a.len() == b.len() && !a.iter().any(Value::is_number) => {
+            let pairs = a.iter().zip(b).enumerate();
+            pairs
+                .flat_map(|(index, (a, b))| differences(&format!("{place}[{index}]"), a, b))
+                .collect()
+        }
+        (a, b) if a == b => Vec::new(),
+        _ => vec![place.to_owned()],
+    }
+}
+
+/// A run in doubles.
+struct Run {
+    values: Computed<f64>,
+    has_negative_weight: bool,
+}
+
+impl Run {
+    /// Step, mode and value of a quantity wherever it has one.
+    fn each(&self, quantity: Quantity) -> Vec<(usize, usize, Vec<f64>)> {
+        let places = self.values.values.all_places().filter(|place| place.1 == quantity);
+        places
+            .filter_map(|(step, quantity, mode)| {
+                let value = self.values.values.get(step, quantity, mode)?;
+                Some((step, mode, value.clone()))
+            })
+            .collect()
+    }
+}
+
+struct InDoubles<'a>(&'a ProblemFile);
+
+impl Work for InDoubles<'_> {
+    type Output = Run;
+
+    fn run<const N: usize, const M: usize>(self) -> Run {
+        let setup = self.0.setup::<f64, N, M>(|value| value).unwrap();
+        let weights = setup
+            .problem
+            .rule
+            .iter()
+            .flat_map(|rule| rule.weights.iter().chain(&rule.covariance_weights));
+        Run {
+            has_negative_weight: weights.copied().any(|weight| weight < 0.0),
+            values: setup.run(),
+        }
+    }
+}
+
+fn run(problem: &ProblemFile) -> Run {
+    let (n, m, _) = problem.dimensions();
+    shape::dispatch(n, m, InDoubles(problem)).unwrap()
+}
