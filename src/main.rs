@@ -1,9 +1,12 @@
 //! The command line: reads arguments, calls the library, prints.
 //!
-//! Exit status: 0 when the command did what was asked, 1 when its output could not be written, 2 when it was asked for something that
-//! does not exist.
+//! Exit status: 0 when the command did what was asked, 1 when its output could not be written or what it checked is wrong, 2 when it
+//! was asked for something that does not exist.
+
+mod cli;
 
 use clap::{Args, Parser, Subcommand};
+use cli::{Done, Refusal, json_text, write_file};
 use immaculate::number::Rational;
 use immaculate::paper::monte_carlo::Progress;
 use immaculate::paper::specification::Choices;
@@ -20,7 +23,7 @@ use std::process::ExitCode;
 #[derive(Parser)]
 #[command(version, about, arg_required_else_help = true)]
 #[command(
-    after_help = "Exit status: 0 done, 1 output could not be written, 2 asked for something that does not exist."
+    after_help = "Exit status: 0 done, 1 output could not be written or something that was checked is wrong, 2 asked for something that does not exist."
 )]
 struct Cli {
     #[command(subcommand)]
@@ -37,6 +40,16 @@ enum Command {
     Rule(Rule),
     /// List the open parameters of the papers' scenarios and their alternatives
     Choices(ListChoices),
+    /// Judge a filter in any language: right to so many digits, or wrong in which equation, and why
+    Check(cli::check::Check),
+    /// Run a problem file and print every value of every step; with --digits, proven
+    Trace(cli::trace::Trace),
+    /// List, show, copy and prove the certified cases
+    Cases(cli::cases::Cases),
+    /// List the catalogue of mistakes, conventions and forms that `check` can name
+    Variants(cli::variants::Variants),
+    /// Be a program under test: this crate's own filter, with mistakes planted on demand
+    Answer(cli::answer::Answer),
 }
 
 #[derive(Args)]
@@ -109,30 +122,21 @@ struct ListChoices {
     json: bool,
 }
 
-/// What a command could not do.
-enum Refusal {
-    /// It was asked for something that does not exist.
-    Request(String),
-    /// Its output could not be written.
-    Output(String),
-}
-
-impl Refusal {
-    fn request(error: impl std::fmt::Display) -> Self {
-        Self::Request(error.to_string())
-    }
-}
-
 fn main() -> ExitCode {
     let cli = Cli::parse();
     let outcome = match &cli.command {
-        Command::Reproduce(arguments) => reproduce(arguments),
-        Command::Claims(arguments) => claims(arguments),
-        Command::Rule(arguments) => rule(arguments),
-        Command::Choices(arguments) => Ok(choices(arguments)),
+        Command::Reproduce(arguments) => reproduce(arguments).map(Done::from),
+        Command::Claims(arguments) => claims(arguments).map(Done::from),
+        Command::Rule(arguments) => rule(arguments).map(Done::from),
+        Command::Choices(arguments) => Ok(choices(arguments).into()),
+        Command::Check(arguments) => cli::check::run(arguments),
+        Command::Trace(arguments) => cli::trace::run(arguments),
+        Command::Cases(arguments) => cli::cases::run(arguments),
+        Command::Variants(arguments) => cli::variants::run(arguments),
+        Command::Answer(arguments) => cli::answer::run(arguments),
     };
-    match outcome.and_then(|text| print(&text)) {
-        Ok(()) => ExitCode::SUCCESS,
+    match outcome.and_then(|done| print(&done.text).map(|()| done.status)) {
+        Ok(status) => ExitCode::from(status),
         Err(Refusal::Output(sentence)) => complain(&sentence, 1),
         Err(Refusal::Request(sentence)) => complain(&sentence, 2),
     }
@@ -153,10 +157,6 @@ fn print(text: &str) -> Result<(), Refusal> {
         }
         _ => Ok(()),
     }
-}
-
-fn json_text(value: &serde_json::Value) -> String {
-    format!("{value:#}\n")
 }
 
 fn papers(given: &[Paper]) -> Vec<Paper> {
@@ -295,7 +295,7 @@ fn write_files(
     ];
     for (name, content) in files {
         let path = directory.join(name);
-        std::fs::write(&path, content).map_err(|error| Refusal::Output(format!("{}: {error}", path.display())))?;
+        write_file(&path, &content)?;
     }
     Ok(())
 }

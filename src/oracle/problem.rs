@@ -158,6 +158,20 @@ pub struct Conventions {
     pub log_likelihood: String,
 }
 
+impl Conventions {
+    /// Whether a convention has this value here.
+    pub fn has(&self, key: &str, value: &str) -> bool {
+        let own = match key {
+            "square_root" => &self.square_root,
+            "angle_mean" => &self.angle_mean,
+            "first_step" => &self.first_step,
+            "log_likelihood" => &self.log_likelihood,
+            _ => return false,
+        };
+        own == value
+    }
+}
+
 impl Default for Conventions {
     fn default() -> Self {
         Self {
@@ -238,16 +252,16 @@ impl ProblemFile {
     }
 
     fn check_conventions(&self) -> Result<(), Invalid> {
-        let (given, known) = (&self.conventions, Conventions::default());
+        let given = &self.conventions;
         let pairs = [
-            ("square_root", &given.square_root, &known.square_root),
-            ("angle_mean", &given.angle_mean, &known.angle_mean),
-            ("first_step", &given.first_step, &known.first_step),
-            ("log_likelihood", &given.log_likelihood, &known.log_likelihood),
+            ("square_root", &given.square_root),
+            ("angle_mean", &given.angle_mean),
+            ("first_step", &given.first_step),
+            ("log_likelihood", &given.log_likelihood),
         ];
-        for (key, given, known) in pairs {
-            if given != known {
-                let reason = format!("is {given:?}; problems of this format have {known:?}");
+        for (key, value) in pairs {
+            if !Conventions::default().has(key, value) {
+                let reason = format!("is {value:?}, which no problem of this format has");
                 return Err(Invalid::new(
                     Class::Unknown,
                     format!("problem.conventions.{key}"),

@@ -4,7 +4,10 @@
 //! shows a value, the computed one is kept for comparison and *the program's own* is put in its place. So each value is computed
 //! from the program's own earlier values, and where some are hidden, from the last ones that it showed.
 
+use super::invalid::Invalid;
+use super::problem::ProblemFile;
 use super::setup::Setup;
+use super::shape::{self, Work};
 use super::trace::{Dimensions, Table, Trace};
 use crate::imm::{Failure, Observer, Quantity, Step};
 use crate::number::Real;
@@ -103,4 +106,27 @@ fn resume<T: Real, const N: usize, const M: usize>(
         }
     }
     true
+}
+
+/// Runs a problem in doubles; the trace, and why it stopped before the end if it did.
+///
+/// # Errors
+///
+/// [`Invalid`] for a problem that cannot be set up.
+pub fn run_in_doubles(problem: &ProblemFile) -> Result<(Trace, Option<String>), Invalid> {
+    let (n, m, _) = problem.dimensions();
+    shape::dispatch(n, m, InDoubles(problem))?
+}
+
+/// The work of [`run_in_doubles`] for one shape.
+struct InDoubles<'a>(&'a ProblemFile);
+
+impl Work for InDoubles<'_> {
+    type Output = Result<(Trace, Option<String>), Invalid>;
+
+    fn run<const N: usize, const M: usize>(self) -> Self::Output {
+        let setup: Setup<f64, N, M> = self.0.setup(|value| value)?;
+        let Computed { values, failures } = setup.run();
+        Ok((values, failures.first().map(ToString::to_string)))
+    }
 }

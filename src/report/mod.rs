@@ -3,10 +3,14 @@
 //! After this folder the reader knows how each command's answer looks. The same answers are written as JSON by serialising the values
 //! themselves; nothing is computed here.
 
+pub mod cases;
+pub mod check;
 pub mod claims;
 pub mod figure;
 pub mod reproduction;
 pub mod rule;
+pub mod trace;
+pub mod variants;
 
 use crate::paper::specification::Citation;
 use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};

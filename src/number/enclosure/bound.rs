@@ -151,7 +151,11 @@ impl Bound {
             // The other one is less than a unit of 2^(e−34), for a mantissa of 30 bits.
             (u128::from(self.mantissa) << 34, 1, self.exponent - 34)
         } else if gap >= 0 {
-            (u128::from(self.mantissa) << gap, u128::from(other.mantissa), other.exponent)
+            (
+                u128::from(self.mantissa) << gap,
+                u128::from(other.mantissa),
+                other.exponent,
+            )
         } else {
             // Where the other one has the greater exponent, it is the greater one: mantissas are normalised.
             return Self::ZERO;

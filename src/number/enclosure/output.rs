@@ -58,6 +58,11 @@ impl Enclosure {
         (ball.is_exact() || ball.upper().to_decimal(digits)? == low).then_some(low)
     }
 
+    /// The double nearest to the middle of the enclosure; NaN if undecided.
+    pub fn middle(&self) -> f64 {
+        self.ball.as_ref().map_or(f64::NAN, |ball| ball.middle.nearest_double())
+    }
+
     /// A double that is not below the magnitude of any number of the enclosure, and the least of them; ∞ beyond all doubles, NaN
     /// if undecided.
     pub fn magnitude(&self) -> f64 {

@@ -1,0 +1,62 @@
+//! `immaculate answer`: this crate's own filter in doubles as a program under test.
+
+use super::{Done, Refusal};
+use clap::{Args, ValueEnum};
+use immaculate::oracle::answer::{Message, respond};
+use immaculate::oracle::subject::{Level, Planted};
+use immaculate::oracle::variant::find;
+use std::io::{BufRead, Write};
+
+/// How much is shown.
+#[derive(Clone, Copy, ValueEnum)]
+enum Show {
+    /// Every value of a trace
+    Everything,
+    /// Updated estimates, mode probabilities and the combined estimate
+    Posteriors,
+    /// The combined estimate alone
+    Combined,
+}
+
+#[derive(Args)]
+#[command(after_help = "Try: immaculate check -- immaculate answer --plant mixed-spread-omitted")]
+pub struct Answer {
+    /// Plant a variant of the catalogue, to see how it is found; may be given again (`immaculate variants` lists them)
+    #[arg(long = "plant", value_name = "VARIANT")]
+    variants: Vec<String>,
+    /// How much of a trace is shown
+    #[arg(long, value_enum, default_value = "everything")]
+    show: Show,
+}
+
+pub fn run(arguments: &Answer) -> Result<Done, Refusal> {
+    for id in &arguments.variants {
+        if find(id).is_none() {
+            return Err(Refusal::request(format!(
+                "there is no variant `{id}`; `immaculate variants` lists them"
+            )));
+        }
+    }
+    let mut planted = Planted {
+        variants: arguments.variants.clone(),
+        level: match arguments.show {
+            Show::Everything => Level::Everything,
+            Show::Posteriors => Level::Posteriors,
+            Show::Combined => Level::Combined,
+        },
+    };
+    for line in std::io::stdin().lock().lines() {
+        let line = line.map_err(|error| Refusal::Output(format!("standard input: {error}")))?;
+        match respond(&mut planted, &line) {
+            Message::Reply(reply) => {
+                let mut out = std::io::stdout().lock();
+                writeln!(out, "{reply}")
+                    .and_then(|()| out.flush())
+                    .map_err(|error| Refusal::Output(format!("standard output: {error}")))?;
+            }
+            Message::Stop => break,
+            Message::NotUnderstood(reason) => return Err(Refusal::request(reason)),
+        }
+    }
+    Ok(String::new().into())
+}

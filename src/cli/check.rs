@@ -1,0 +1,86 @@
+//! `immaculate check`: judges a program under test.
+
+use super::{Done, Refusal, json_text};
+use clap::Args;
+use immaculate::oracle::case;
+use immaculate::oracle::check::{Selection, check};
+use immaculate::oracle::folder::Folder;
+use immaculate::oracle::process::Process;
+use immaculate::oracle::subject::Subject;
+use immaculate::report;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::path::PathBuf;
+use std::time::Duration;
+
+#[derive(Args)]
+#[command(
+    after_help = "Exit status: 0 all right, 1 something is wrong, 2 the check could not be made.\n\n\
+    The protocol and the file formats are in spec/formats.md; examples in several languages are in tests/adapters."
+)]
+pub struct Check {
+    /// The program under test and its arguments; it is started once and spoken to in JSON lines
+    #[arg(last = true, value_name = "COMMAND")]
+    command: Vec<String>,
+    /// Judge answer files instead of a program: ID.json or ID.csv for each case, in this folder
+    #[arg(long, value_name = "DIR", conflicts_with = "command")]
+    answers: Option<PathBuf>,
+    /// Only cases whose id begins with this; may be given again
+    #[arg(long = "case", value_name = "ID")]
+    cases: Vec<String>,
+    /// Only cases with this flag; may be given again (`immaculate cases list` knows the flags)
+    #[arg(long = "flag", value_name = "FLAG")]
+    flags: Vec<String>,
+    /// Only cases of this filter: kalman, unscented, or a rule; may be given again
+    #[arg(long = "kind", value_name = "KIND")]
+    kinds: Vec<String>,
+    /// The time that the program has for each case, in seconds
+    #[arg(long, value_name = "SECONDS", default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..=3600))]
+    timeout: u64,
+    /// Print JSON instead of text
+    #[arg(long)]
+    json: bool,
+}
+
+pub fn run(arguments: &Check) -> Result<Done, Refusal> {
+    let mut subject: Box<dyn Subject> = match &arguments.answers {
+        Some(path) => Box::new(Folder { path: path.clone() }),
+        None if arguments.command.is_empty() => {
+            return Err(Refusal::request(
+                "nothing to check: give a command after `--`, or a folder of answers with --answers",
+            ));
+        }
+        None => Box::new(Process::new(
+            arguments.command.clone(),
+            Duration::from_secs(arguments.timeout),
+        )),
+    };
+    let selection = Selection {
+        ids: arguments.cases.clone(),
+        flags: arguments.flags.clone(),
+        kinds: arguments.kinds.clone(),
+    };
+    let selected = case::all()
+        .map_err(Refusal::request)?
+        .iter()
+        .filter(|case| selection.has(case))
+        .count();
+    let bar = ProgressBar::new(selected as u64).with_style(
+        ProgressStyle::with_template("checking {wide_bar} {pos}/{len} {msg}")
+            .unwrap_or_else(|_| ProgressStyle::default_bar()),
+    );
+    let progress = |id: &str| {
+        bar.set_message(id.to_owned());
+        bar.inc(1);
+    };
+    let report = check(subject.as_mut(), &selection, &progress).map_err(Refusal::request)?;
+    bar.finish_and_clear();
+    let text = if arguments.json {
+        json_text(&report::check::json(&report))
+    } else {
+        report::check::text(&report)
+    };
+    Ok(Done {
+        text,
+        status: u8::from(report.is_wrong()),
+    })
+}

@@ -1,0 +1,69 @@
+//! `immaculate trace`: runs a problem file and prints every value of every step.
+
+use super::{Done, Refusal, json_text, read_file};
+use clap::Args;
+use immaculate::oracle::certify::certified_decimals;
+use immaculate::oracle::csv;
+use immaculate::oracle::problem::ProblemFile;
+use immaculate::oracle::run::run_in_doubles;
+use immaculate::oracle::trace::{FORMAT, numbers_as_json};
+use immaculate::report;
+use serde_json::json;
+use std::path::PathBuf;
+
+#[derive(Args)]
+pub struct Trace {
+    /// The problem file (`-` for standard input), or the id of a published case
+    file: PathBuf,
+    /// Print so many certified digits of every value, proven by enclosure, instead of doubles
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    digits: Option<u32>,
+    /// Print JSON instead of text
+    #[arg(long, conflicts_with = "csv")]
+    json: bool,
+    /// Print the long CSV instead of text
+    #[arg(long, conflicts_with = "digits")]
+    csv: bool,
+}
+
+pub fn run(arguments: &Trace) -> Result<Done, Refusal> {
+    let name = arguments.file.display().to_string();
+    let published = immaculate::oracle::case::all()
+        .map_err(Refusal::request)?
+        .iter()
+        .find(|case| case.problem.id == name)
+        .filter(|_| !arguments.file.exists());
+    let text = match published {
+        Some(case) => case.problem_text.to_owned(),
+        None => read_file(&arguments.file)?,
+    };
+    let wrong = |error: &dyn std::fmt::Display| Refusal::Request(format!("{name}: {error}"));
+    let problem = ProblemFile::read(&text).map_err(|error| wrong(&error))?;
+    let Some(digits) = arguments.digits else {
+        let (values, failure) = run_in_doubles(&problem).map_err(|error| wrong(&error))?;
+        if arguments.csv {
+            return Ok(csv::write(&problem.id, &values, "", |_, _| String::new()).into());
+        }
+        if arguments.json {
+            let steps = values.steps_as_json();
+            let value = json!({ "format": FORMAT, "id": problem.id, "steps": steps, "error": failure });
+            return Ok(json_text(&value).into());
+        }
+        let texts = values.map(|_, numbers| numbers.iter().map(|number| format!("{number:?}")).collect());
+        let mut text = report::trace::text(&problem, &texts);
+        if let Some(failure) = failure {
+            text.push_str(&format!("{failure}\n"));
+        }
+        return Ok(text.into());
+    };
+    let (decimals, bits) = certified_decimals(&problem, digits).map_err(|error| wrong(&error))?;
+    if arguments.json {
+        let dimensions = decimals.dimensions;
+        let steps = decimals.to_json(|quantity, numbers| numbers_as_json(quantity, dimensions, numbers));
+        let value = json!({ "format": FORMAT, "id": problem.id, "digits": digits, "bits": bits, "steps": steps });
+        return Ok(json_text(&value).into());
+    }
+    let mut text = report::trace::text(&problem, &decimals);
+    text.push_str(&format!("{digits} digits of every value, proven with {bits} bits\n"));
+    Ok(text.into())
+}

@@ -1,0 +1,34 @@
+//! `immaculate variants`: the catalogue of what can be done otherwise.
+
+use super::{Done, Refusal, json_text};
+use clap::Args;
+use immaculate::oracle::variant::{catalogue, find};
+use immaculate::report;
+use serde_json::json;
+
+#[derive(Args)]
+pub struct Variants {
+    /// One variant in full; all in a table when none is given
+    id: Option<String>,
+    /// Print JSON instead of text
+    #[arg(long)]
+    json: bool,
+}
+
+pub fn run(arguments: &Variants) -> Result<Done, Refusal> {
+    let Some(id) = &arguments.id else {
+        if arguments.json {
+            return Ok(json_text(
+                &json!({ "variants": catalogue().iter().map(report::variants::json).collect::<Vec<_>>() }),
+            )
+            .into());
+        }
+        return Ok(report::variants::table_of(catalogue()).into());
+    };
+    let variant = find(id)
+        .ok_or_else(|| Refusal::request(format!("there is no variant `{id}`; `immaculate variants` lists them")))?;
+    if arguments.json {
+        return Ok(json_text(&report::variants::json(variant)).into());
+    }
+    Ok(report::variants::in_full(variant).into())
+}

@@ -1,0 +1,302 @@
+//! Certified traces: for every number the double nearest to the exact value, proven by enclosure.
+//!
+//! After this file the reader knows the first promise of the cases. The equations are evaluated in [`Enclosure`] on the exact inputs of the
+//! file. If every number of the trace is enclosed so narrowly that one double is the nearest to all that the enclosure holds, these doubles
+//! are the trace; if not, or if a comparison cannot be decided, it is done again with twice the bits.
+
+use super::invalid::Invalid;
+use super::noise;
+use super::problem::ProblemFile;
+use super::scale::scales;
+use super::setup::Setup;
+use super::shape::{self, Work};
+use super::trace::{Table, Trace, numbers_as_json};
+use crate::imm::Quantity;
+use crate::number::{Enclosure, RandomRounding};
+use serde_json::{Value, json};
+
+/// The bits of the first attempt. The longest runs of the published cases need some hundreds.
+pub const FIRST_BITS: u32 = 256;
+
+/// The bits of the last attempt: a run of a thousand steps needs fewer.
+pub const MOST_BITS: u32 = 1 << 15;
+
+/// An enclosure narrower than this part of its scale is as good as a point. If zero is in it, 0 is written, and if the middle between two
+/// doubles is in it, the one whose last bit is zero: problems with symmetries and short numbers have such values, and no number of
+/// bits would narrow their enclosures to the point itself.
+const POINT: f64 = 6.223_015_277_861_142e-61; // 2⁻²⁰⁰
+
+/// A trace that cannot be certified.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum NotCertified {
+    /// The problem is wrong.
+    #[error("{0}")]
+    Invalid(#[from] Invalid),
+    /// A step could not be computed, or a value not decided, with the most bits.
+    #[error("{reason}, with {bits} bits")]
+    Undecided {
+        /// What.
+        reason: String,
+        /// With so many bits.
+        bits: u32,
+    },
+}
+
+/// A certified trace.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Certified {
+    /// For each number the nearest double.
+    pub trace: Trace,
+    /// Its natural unit.
+    pub scale: Trace,
+    /// Its rounding noise in double precision, in its own units.
+    pub noise: Trace,
+    /// The bits that were enough.
+    pub bits: u32,
+    /// The digits that the worst enclosure of the run still had, relative to its scale.
+    pub digits: u32,
+}
+
+/// Certifies a problem's trace, with more and more bits.
+///
+/// # Errors
+///
+/// [`NotCertified`] when the problem is wrong or the most bits are not enough.
+pub fn certify(problem: &ProblemFile) -> Result<Certified, NotCertified> {
+    certify_from(problem, FIRST_BITS)
+}
+
+/// As [`certify`], with so many bits at first.
+///
+/// # Errors
+///
+/// As [`certify`].
+pub fn certify_from(problem: &ProblemFile, first_bits: u32) -> Result<Certified, NotCertified> {
+    problem.check()?;
+    let (n, m, _) = problem.dimensions();
+    let mut bits = first_bits;
+    loop {
+        match shape::dispatch(n, m, Attempt { problem, bits })? {
+            Ok(certified) => return Ok(certified),
+            Err(NotCertified::Undecided { .. }) if bits < MOST_BITS => bits *= 2,
+            Err(error) => return Err(error),
+        }
+    }
+}
+
+/// One attempt with a number of bits.
+struct Attempt<'a> {
+    problem: &'a ProblemFile,
+    bits: u32,
+}
+
+impl Work for Attempt<'_> {
+    type Output = Result<Certified, NotCertified>;
+
+    fn run<const N: usize, const M: usize>(self) -> Self::Output {
+        let Self { problem, bits } = self;
+        let undecided = |reason: String| NotCertified::Undecided { reason, bits };
+        let (trace, digits) = Enclosure::with_precision(bits, || -> Result<_, NotCertified> {
+            let setup: Setup<Enclosure, N, M> = problem.setup(Enclosure::exact)?;
+            let computed = setup.run();
+            if let Some(failure) = computed.failures.first() {
+                return Err(undecided(failure.to_string()));
+            }
+            nearest(&computed.values).map_err(undecided)
+        })?;
+        let scale = scales(&trace);
+        let unit_roundoff = f64::EPSILON / 2.0;
+        let noise = noise::spread(&trace, unit_roundoff, || {
+            problem
+                .setup::<RandomRounding, N, M>(RandomRounding::input)
+                .map_or_else(|_| unreachable_run(&trace), |setup| setup.run())
+        });
+        Ok(Certified {
+            trace,
+            scale,
+            noise,
+            bits,
+            digits,
+        })
+    }
+}
+
+/// A run without values, for a problem that has been set up before and cannot be now.
+fn unreachable_run(trace: &Trace) -> super::run::Computed<RandomRounding> {
+    super::run::Computed {
+        values: Table::empty(trace.dimensions),
+        failures: Vec::new(),
+    }
+}
+
+/// The doubles nearest to enclosures, and the digits of the widest one; what is not measured is left out.
+///
+/// # Errors
+///
+/// The first value that is not narrow enough.
+fn nearest(values: &Table<Vec<Enclosure>>) -> Result<(Trace, u32), String> {
+    // The middles serve for the scales, which need two digits.
+    let about = scales(&values.map(|_, numbers| numbers.iter().map(|number| number.middle()).collect()));
+    let mut trace = Trace::empty(values.dimensions);
+    let mut widest = 0.0_f64;
+    for (step, quantity, mode) in values.all_places() {
+        let Some(numbers) = values.get(step, quantity, mode) else {
+            continue;
+        };
+        let mut doubles = Vec::new();
+        for (index, number) in numbers.iter().enumerate() {
+            let scale = about.get(step, quantity, mode).map_or(1.0, |scales| scales[index]);
+            widest = widest.max(number.width() / scale);
+            doubles.push(nearest_double(number, scale).ok_or_else(|| {
+                let name = quantity.name();
+                format!("step {step}, mode {mode}: number {index} of {name} is not decided")
+            })?);
+        }
+        trace.set(step, quantity, mode, doubles);
+    }
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "between 0 and 400 000"
+    )]
+    let digits = (-widest.max(f64::MIN_POSITIVE).log10()).max(0.0) as u32;
+    Ok((trace, digits))
+}
+
+/// The double nearest to every number of an enclosure, or to the point that it is as good as.
+fn nearest_double(number: &Enclosure, scale: f64) -> Option<f64> {
+    if is_as_good_as_zero(number, scale) {
+        return Some(0.0);
+    }
+    if let Some(double) = number.to_f64() {
+        return Some(double);
+    }
+    let (below, above) = (number.lower().to_f64(), number.upper().to_f64());
+    let is_tie = number.width() <= POINT * scale && below.next_up() == above;
+    is_tie.then_some(if below.to_bits() % 2 == 0 { below } else { above })
+}
+
+/// Whether an enclosure holds zero and is as good as a point.
+fn is_as_good_as_zero(number: &Enclosure, scale: f64) -> bool {
+    number.middle().abs() <= POINT * scale && number.width() <= POINT * scale
+}
+
+impl Certified {
+    /// The trace file.
+    pub fn to_json(&self, id: &str) -> Value {
+        json!({
+            "format": super::trace::FORMAT,
+            "id": id,
+            "steps": self.trace.steps_as_json(),
+            "scale": self.scale.to_json(|quantity, values| {
+                let short: Vec<f64> = values.iter().map(|value| rounded(*value, 3)).collect();
+                numbers_as_json(quantity, self.scale.dimensions, &short)
+            }),
+            "noise": self.noise_by_quantity().to_json(|_, noise| json!(noise)),
+        })
+    }
+
+    /// The noise of each quantity in units of its scale: the greatest of its numbers', and not less than a unit roundoff.
+    pub fn noise_by_quantity(&self) -> Table<f64> {
+        self.noise.map(|(step, quantity, mode), spread| {
+            let scale = self.scale.get(step, quantity, mode);
+            let relative = spread
+                .iter()
+                .enumerate()
+                .map(|(index, spread)| spread / scale.map_or(1.0, |scale| scale[index]));
+            rounded(relative.fold(f64::EPSILON / 2.0, f64::max), 2)
+        })
+    }
+}
+
+/// The long CSV of a published trace, with the scale and the noise of each number in two more columns.
+pub fn long_csv(id: &str, trace: &Trace, trace_text: &str) -> String {
+    // The noise stands in the file; the scale follows from the trace.
+    let scale = scales(trace);
+    let file: Value = serde_json::from_str(trace_text).unwrap_or_default();
+    super::csv::write(id, trace, ",scale,noise", |(step, quantity, mode), index| {
+        let scale = scale.get(step, quantity, mode).map_or(1.0, |scale| scale[index]);
+        let mut noise = &file["noise"][step - 1];
+        if quantity.is_of_mode() {
+            noise = &noise["modes"][mode];
+        }
+        for key in quantity.name().split('.') {
+            noise = &noise[key];
+        }
+        format!(",{:?},{noise}", rounded(scale, 3))
+    })
+}
+
+/// A number rounded to so many significant digits.
+fn rounded(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
+}
+
+/// Certified decimals of a problem's trace: `digits` significant ones for every number.
+///
+/// # Errors
+///
+/// As [`certify`].
+pub fn certified_decimals(problem: &ProblemFile, digits: u32) -> Result<(Table<Vec<String>>, u32), NotCertified> {
+    problem.check()?;
+    let (n, m, _) = problem.dimensions();
+    // 3.33 bits a digit, and some for what is lost on the way.
+    let mut bits = FIRST_BITS.max((digits.saturating_mul(4)).next_power_of_two());
+    loop {
+        match shape::dispatch(n, m, Decimals { problem, bits, digits })? {
+            Ok(decimals) => return Ok((decimals, bits)),
+            Err(NotCertified::Undecided { .. }) if bits < MOST_BITS => bits *= 2,
+            Err(error) => return Err(error),
+        }
+    }
+}
+
+/// One attempt at decimals.
+struct Decimals<'a> {
+    problem: &'a ProblemFile,
+    bits: u32,
+    digits: u32,
+}
+
+impl Work for Decimals<'_> {
+    type Output = Result<Table<Vec<String>>, NotCertified>;
+
+    fn run<const N: usize, const M: usize>(self) -> Self::Output {
+        let Self { problem, bits, digits } = self;
+        let undecided = |reason: String| NotCertified::Undecided { reason, bits };
+        Enclosure::with_precision(bits, || {
+            let setup: Setup<Enclosure, N, M> = problem.setup(Enclosure::exact)?;
+            let computed = setup.run();
+            if let Some(failure) = computed.failures.first() {
+                return Err(undecided(failure.to_string()));
+            }
+            let values = computed.values;
+            let about = scales(&values.map(|_, numbers| numbers.iter().map(Enclosure::middle).collect()));
+            let mut decimals = Table::empty(values.dimensions);
+            for (step, quantity, mode) in values.all_places() {
+                let Some(numbers) = values.get(step, quantity, mode) else {
+                    continue;
+                };
+                let scale = about.get(step, quantity, mode);
+                let texts = numbers.iter().enumerate().map(|(index, number)| {
+                    if is_as_good_as_zero(number, scale.map_or(1.0, |scale| scale[index])) {
+                        Some("0".to_owned())
+                    } else {
+                        number.to_decimal(digits)
+                    }
+                });
+                let texts: Option<Vec<String>> = texts.collect();
+                let place = || undecided_place(step, quantity, mode);
+                decimals.set(step, quantity, mode, texts.ok_or_else(|| undecided(place()))?);
+            }
+            Ok(decimals)
+        })
+    }
+}
+
+fn undecided_place(step: usize, quantity: Quantity, mode: usize) -> String {
+    format!(
+        "step {step}, mode {mode}: {} is not decided to so many digits",
+        quantity.name()
+    )
+}

@@ -1,0 +1,73 @@
+//! Answers as files: one `ID.json` or `ID.csv` a case in a folder, and perhaps a `ready.json`.
+
+use super::csv;
+use super::problem::ProblemFile;
+use super::process::read_answer;
+use super::subject::{Answer, Broken, Ready, Subject};
+use super::trace::{Dimensions, read_json};
+use std::path::{Path, PathBuf};
+
+/// A folder of answers.
+#[derive(Debug, Clone)]
+pub struct Folder {
+    /// Where it is.
+    pub path: PathBuf,
+}
+
+/// Reads a file of bounded size; none if there is no such file.
+fn read_file(path: &Path) -> Result<Option<String>, Broken> {
+    const GREATEST: u64 = 1 << 28;
+    let wrong = |reason: String| Broken::NotStarted(format!("{}: {reason}", path.display()));
+    match std::fs::metadata(path) {
+        Err(_) => return Ok(None),
+        Ok(metadata) if metadata.len() > GREATEST => return Err(wrong(format!("is larger than {GREATEST} bytes"))),
+        Ok(_) => {}
+    }
+    std::fs::read_to_string(path)
+        .map(Some)
+        .map_err(|error| wrong(error.to_string()))
+}
+
+impl Subject for Folder {
+    fn start(&mut self) -> Result<Ready, Broken> {
+        if !self.path.is_dir() {
+            return Err(Broken::NotStarted(format!("{} is not a folder", self.path.display())));
+        }
+        let Some(text) = read_file(&self.path.join("ready.json"))? else {
+            return Ok(Ready {
+                name: self.path.display().to_string(),
+                ..Ready::default()
+            });
+        };
+        read_json(&text)
+            .and_then(|message| Ready::read(&message))
+            .map_err(|reason| Broken::NotStarted(format!("{}: {reason}", self.path.join("ready.json").display())))
+    }
+
+    fn run(&mut self, problem: &ProblemFile) -> Answer {
+        self.read(problem).unwrap_or_else(Answer::Broken)
+    }
+}
+
+impl Folder {
+    fn read(&self, problem: &ProblemFile) -> Result<Answer, Broken> {
+        let (n, m, r) = problem.dimensions();
+        let steps = problem.measurements.len();
+        let dimensions = Dimensions { n, m, r, steps };
+        let path = self.path.join(format!("{}.json", problem.id));
+        if let Some(text) = read_file(&path)? {
+            let message = read_json(&text).map_err(|reason| Broken::Garbage {
+                line: path.display().to_string(),
+                reason,
+            })?;
+            return read_answer(&message, dimensions);
+        }
+        if let Some(text) = read_file(&self.path.join(format!("{}.csv", problem.id)))? {
+            let trace = csv::read(&text, &problem.id, dimensions).map_err(Broken::Invalid)?;
+            return Ok(Answer::Steps { trace, error: None });
+        }
+        Ok(Answer::Skipped {
+            reason: "there is no answer file".into(),
+        })
+    }
+}

@@ -1,0 +1,398 @@
+//! Judging the values of one case: each against the certified trace, and against its own equation on the program's own earlier values.
+//!
+//! After this file the reader knows when a value is right, when its error is inherited, and when it is a fault:
+//!
+//! - an error within [`LIMIT`] times its rounding noise of the certified value is **right**;
+//! - else, within as much of what its own equation gives on the program's own inputs, it is **propagated**: the error was made before;
+//! - else it is a **fault** of this equation, or, where inputs are hidden, of one of the equations since the last shown values;
+//! - unless these hidden values were under suspicion already: then it is **undetermined**;
+//! - and where the noise is as large as the value's unit, nobody **can tell**.
+
+use super::invalid::Invalid;
+use super::noise;
+use super::problem::ProblemFile;
+use super::scale::scales;
+use super::setup::Setup;
+use super::shape::{self, Work};
+use super::subject::Precision;
+use super::trace::Trace;
+use super::variant;
+use crate::imm::Quantity;
+use crate::imm::quantity::Input;
+use crate::number::RandomRounding;
+use std::collections::BTreeSet;
+
+/// An error of more than so many times the rounding noise is none of rounding. Right filters of other algebra and precision stay below
+/// about 12, other conventions start at some 200, mistakes at 10⁷ (measured over the published cases; see `tests/oracle.rs`).
+pub const LIMIT: f64 = 100.0;
+
+/// A value of a trace: step, quantity, mode.
+pub type Place = (usize, Quantity, usize);
+
+/// What is known of a shown value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Finding {
+    /// As certified.
+    Right,
+    /// As its own inputs have it; the error was made before.
+    Propagated,
+    /// Rounding noise as large as the value's unit.
+    CannotTell,
+    /// Built on hidden values that are under suspicion.
+    Undetermined,
+    /// Shown although there is none: no detection.
+    Stale,
+    /// Not finite.
+    NotFinite,
+    /// Not what its equation gives.
+    Fault,
+}
+
+/// A shown value, judged.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Judged {
+    /// Which value.
+    pub place: Place,
+    /// The finding.
+    pub finding: Finding,
+    /// The greatest error of its numbers against the certified ones, in their scale.
+    pub error: f64,
+    /// The same against its own equation on the program's own inputs, with the number at which it is.
+    pub own: Option<OwnError>,
+    /// The quantities that were not shown between this value and the shown ones that it depends on.
+    pub hidden: Vec<Quantity>,
+}
+
+/// The error of a value against its own equation on the program's own inputs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OwnError {
+    /// Which number, by rows.
+    pub index: usize,
+    /// The number that is shown.
+    pub shown: f64,
+    /// The number that it should have been from the program's own inputs.
+    pub expected: f64,
+    /// The error in rounding noise.
+    pub ratio: f64,
+    /// The error in the number's scale.
+    pub size: f64,
+}
+
+/// What a case is judged by.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reference {
+    /// The certified trace, or that of the declared conventions.
+    pub trace: Trace,
+    /// Its scales.
+    pub scale: Trace,
+    /// The rounding noise in the precision of the program under test.
+    pub noise: Trace,
+}
+
+/// A judged case.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Judgement {
+    /// All shown values in the order in which they are computed.
+    pub values: Vec<Judged>,
+    /// Steps that could not be evaluated on the program's own values, a sentence each: a covariance that is not positive definite, say.
+    pub failures: Vec<String>,
+}
+
+/// What a run along shown values expects of each, and its noise.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Expected {
+    /// The values by their own equations.
+    pub values: Trace,
+    /// Their rounding noise.
+    pub noise: Trace,
+    /// The steps that could not be evaluated.
+    pub failures: Vec<String>,
+}
+
+/// What a problem's equations, with variants, expect along shown values.
+///
+/// # Errors
+///
+/// [`Invalid`] for a problem that cannot be set up.
+pub fn expect(
+    problem: &ProblemFile,
+    variants: &[&str],
+    shown: Option<&Trace>,
+    precision: Precision,
+) -> Result<Expected, Invalid> {
+    let (n, m, _) = problem.dimensions();
+    let work = Expect {
+        problem,
+        variants,
+        shown,
+        precision,
+    };
+    shape::dispatch(n, m, work)?
+}
+
+/// The work of [`expect`] for one shape.
+struct Expect<'a> {
+    problem: &'a ProblemFile,
+    variants: &'a [&'a str],
+    shown: Option<&'a Trace>,
+    precision: Precision,
+}
+
+impl Work for Expect<'_> {
+    type Output = Result<Expected, Invalid>;
+
+    fn run<const N: usize, const M: usize>(self) -> Self::Output {
+        let mut setup: Setup<f64, N, M> = self.problem.setup(|value| value)?;
+        for id in self.variants {
+            variant::apply(id, &mut setup);
+        }
+        let centre = match self.shown {
+            Some(shown) => setup.run_along(shown, |value| value),
+            None => setup.run(),
+        };
+        let noise = noise::spread(&centre.values, self.precision.unit_roundoff(), || {
+            // The inputs are perturbed, too, so each run has a problem of its own. It can be set up, since the one in doubles could.
+            let Ok(mut setup) = self.problem.setup::<RandomRounding, N, M>(RandomRounding::input) else {
+                return super::run::Computed {
+                    values: super::trace::Table::empty(centre.values.dimensions),
+                    failures: Vec::new(),
+                };
+            };
+            for id in self.variants {
+                variant::apply(id, &mut setup);
+            }
+            match self.shown {
+                Some(shown) => setup.run_along(shown, RandomRounding::input),
+                None => setup.run(),
+            }
+        });
+        Ok(Expected {
+            values: centre.values,
+            noise,
+            failures: centre.failures.iter().map(ToString::to_string).collect(),
+        })
+    }
+}
+
+impl Reference {
+    /// The reference of a problem under variants (declared conventions), computed in doubles; `certified` is used where there are none.
+    ///
+    /// # Errors
+    ///
+    /// [`Invalid`] for a problem that cannot be set up.
+    pub fn new(
+        problem: &ProblemFile,
+        certified: Option<&Trace>,
+        conventions: &[&str],
+        precision: Precision,
+    ) -> Result<Self, Invalid> {
+        let mut expected = expect(problem, conventions, None, precision)?;
+        let trace = match certified {
+            Some(certified) if conventions.is_empty() => certified.clone(),
+            _ => std::mem::replace(&mut expected.values, Trace::empty(expected.noise.dimensions)),
+        };
+        Ok(Self {
+            scale: scales(&trace),
+            trace,
+            noise: expected.noise,
+        })
+    }
+}
+
+/// The error of numbers against expected ones: the greatest in rounding noise, and where.
+///
+/// The noise of a number counts as at least a unit roundoff of its scale: what is smaller means nothing.
+fn compare(
+    place: Place,
+    shown: &[f64],
+    expected: &[f64],
+    noise: &[f64],
+    scale: &[f64],
+    unit: f64,
+    turn: &dyn Fn(Place, usize) -> bool,
+) -> OwnError {
+    let mut worst = OwnError {
+        index: 0,
+        shown: shown[0],
+        expected: expected[0],
+        ratio: -1.0,
+        size: 0.0,
+    };
+    for index in 0..shown.len() {
+        let mut error = (shown[index] - expected[index]).abs();
+        if turn(place, index) {
+            let turns = (error / (2.0 * std::f64::consts::PI)).round();
+            error = (error - turns * 2.0 * std::f64::consts::PI).abs();
+        }
+        let least = unit * scale[index].max(expected[index].abs());
+        let ratio = if error == 0.0 {
+            0.0
+        } else {
+            error / noise[index].max(least)
+        };
+        // A noise that is infinite or a value that is not a number says nothing.
+        let ratio = if ratio.is_nan() { 0.0 } else { ratio };
+        if ratio > worst.ratio {
+            worst = OwnError {
+                index,
+                shown: shown[index],
+                expected: expected[index],
+                ratio,
+                size: error / scale[index],
+            };
+        }
+    }
+    worst
+}
+
+/// What is compared with what.
+pub struct Case<'a> {
+    /// The problem.
+    pub problem: &'a ProblemFile,
+    /// What the program shows.
+    pub shown: &'a Trace,
+    /// What it is judged by.
+    pub reference: &'a Reference,
+    /// Its precision.
+    pub precision: Precision,
+}
+
+impl Case<'_> {
+    /// The error of a shown value against what is expected, in noise and in its scale; none where nothing is expected.
+    fn error(&self, place: Place, expected: &Trace, noise: &Trace) -> Option<OwnError> {
+        let (step, quantity, mode) = place;
+        let shown = self.shown.get(step, quantity, mode)?;
+        let expected = expected.get(step, quantity, mode)?;
+        let noise = noise.get(step, quantity, mode)?;
+        let scale = self.reference.scale.get(step, quantity, mode)?;
+        let turn = |place: Place, row: usize| place.1 == Quantity::PredictedMeasurement && self.problem.is_bearing(row);
+        Some(compare(
+            place,
+            shown,
+            expected,
+            noise,
+            scale,
+            self.precision.unit_roundoff(),
+            &turn,
+        ))
+    }
+
+    /// Whether the noise of a value is as large as its unit.
+    fn is_drowned(&self, place: Place, noise: &Trace) -> bool {
+        let (step, quantity, mode) = place;
+        let noise = noise.get(step, quantity, mode);
+        let scale = self.reference.scale.get(step, quantity, mode);
+        noise.zip(scale).is_some_and(|(noise, scale)| {
+            noise
+                .iter()
+                .zip(scale)
+                .any(|(noise, scale)| LIMIT * noise > *scale || noise.is_nan())
+        })
+    }
+
+    /// Judges all shown values.
+    ///
+    /// # Errors
+    ///
+    /// [`Invalid`] for a problem that cannot be set up.
+    pub fn judge(&self, conventions: &[&str]) -> Result<Judgement, Invalid> {
+        let own = expect(self.problem, conventions, Some(self.shown), self.precision)?;
+        let mut values = Vec::new();
+        let mut suspects = BTreeSet::new();
+        for place in self.shown.all_places() {
+            let (step, quantity, mode) = place;
+            let Some(shown) = self.shown.get(step, quantity, mode) else {
+                continue;
+            };
+            let hidden = hidden_inputs(self.problem, self.shown, place);
+            let against_certified = self.error(place, &self.reference.trace, &self.reference.noise);
+            let against_own = self.error(place, &own.values, &own.noise);
+            let is_right = against_certified.is_some_and(|error| error.ratio <= LIMIT);
+            let is_inherited = against_own.is_some_and(|error| error.ratio <= LIMIT);
+            let finding = if self.reference.trace.get(step, quantity, mode).is_none() {
+                Finding::Stale
+            } else if shown.iter().any(|value| !value.is_finite()) {
+                Finding::NotFinite
+            } else if self.is_drowned(place, &self.reference.noise) && (is_right || self.is_drowned(place, &own.noise))
+            {
+                Finding::CannotTell
+            } else if is_right {
+                Finding::Right
+            } else if is_inherited {
+                Finding::Propagated
+            } else if against_own.is_none() || hidden.iter().any(|place| suspects.contains(place)) {
+                Finding::Undetermined
+            } else {
+                Finding::Fault
+            };
+            if matches!(finding, Finding::Fault | Finding::NotFinite) {
+                suspects.extend(hidden.iter().copied());
+            }
+            let mut names: Vec<Quantity> = hidden.iter().map(|place| place.1).collect();
+            names.sort_unstable();
+            names.dedup();
+            values.push(Judged {
+                place,
+                finding,
+                error: against_certified.map_or(f64::NAN, |error| error.size),
+                own: against_own,
+                hidden: names,
+            });
+        }
+        Ok(Judgement {
+            values,
+            failures: own.failures,
+        })
+    }
+
+    /// Whether the equations with these variants explain all shown values from the program's own; places in `passed` are passed over.
+    ///
+    /// # Errors
+    ///
+    /// [`Invalid`] for a problem that cannot be set up.
+    pub fn is_explained_by(&self, variants: &[&str], passed: &BTreeSet<Place>) -> Result<bool, Invalid> {
+        let own = expect(self.problem, variants, Some(self.shown), self.precision)?;
+        Ok(self
+            .shown
+            .all_places()
+            .filter(|place| self.shown.get(place.0, place.1, place.2).is_some() && !passed.contains(place))
+            .all(|place| {
+                self.error(place, &own.values, &own.noise)
+                    .is_some_and(|error| error.ratio <= LIMIT)
+            }))
+    }
+}
+
+/// The hidden values that a shown one depends on, back to the last shown ones.
+fn hidden_inputs(problem: &ProblemFile, shown: &Trace, place: Place) -> Vec<Place> {
+    let r = shown.dimensions.r;
+    let has_detection = |step: usize| {
+        problem
+            .measurements
+            .get(step - 1)
+            .is_some_and(|entry| entry.z.is_some())
+    };
+    let mut found = BTreeSet::new();
+    let mut open = vec![place];
+    while let Some((step, quantity, mode)) = open.pop() {
+        for input in quantity.inputs(has_detection(step)) {
+            let (step, input, is_before) = match *input {
+                Input::Now(input) => (step, input, false),
+                Input::Before(input) if step > 1 => (step - 1, input, true),
+                Input::Before(_) => continue,
+            };
+            let modes = match (input.is_of_mode(), quantity.is_of_mode() && !is_before) {
+                (true, true) => mode..mode + 1,
+                (true, false) => 0..r,
+                (false, _) => 0..1,
+            };
+            for mode in modes {
+                let next = (step, input, mode);
+                if shown.get(step, input, mode).is_none() && found.insert(next) {
+                    open.push(next);
+                }
+            }
+        }
+    }
+    found.into_iter().collect()
+}

@@ -1,0 +1,96 @@
+//! The JSON Schemas of the file formats, from the types and the table that read the files.
+//!
+//! After this file the reader knows that the schemas in `spec/schemas/` cannot drift from the code: a test holds them against these.
+
+use super::invalid::Class;
+use super::problem::{self, ProblemFile};
+use super::trace;
+use crate::imm::Quantity;
+use serde_json::{Map, Value, json};
+
+/// The schema of problem files.
+pub fn of_problems() -> Value {
+    let mut schema = json!(schemars::schema_for!(ProblemFile));
+    schema["properties"]["format"]["const"] = json!(problem::FORMAT);
+    schema
+}
+
+/// The schema of certified traces.
+pub fn of_traces() -> Value {
+    let number = json!({ "type": "number" });
+    let noise = |_: Quantity| json!({ "type": "number", "exclusiveMinimum": 0 });
+    let list = |steps: Value| json!({ "type": "array", "items": steps });
+    json!({
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "Trace",
+        "description": "What a filter computes, step by step; in certified traces every number is the double nearest to the exact value.",
+        "type": "object",
+        "properties": {
+            "format": { "const": trace::FORMAT },
+            "id": { "type": "string", "description": "The id of the problem." },
+            "steps": list(step(&|quantity| by_rank(quantity, &number))),
+            "scale": list(step(&|quantity| by_rank(quantity, &json!({ "type": "number", "exclusiveMinimum": 0 })))),
+            "noise": list(step(&noise)),
+            "rejected": {
+                "description": "In place of the steps, for a problem that must be rejected.",
+                "type": "object",
+                "properties": {
+                    "class": { "enum": Class::ALL.map(Class::name) },
+                    "reason": { "type": "string" },
+                },
+                "required": ["class", "reason"],
+                "additionalProperties": false,
+            },
+        },
+        "required": ["format", "id"],
+        "oneOf": [{ "required": ["steps", "scale", "noise"] }, { "required": ["rejected"] }],
+        "additionalProperties": false,
+    })
+}
+
+/// A number, a list or a list of lists, by the rank of a quantity.
+fn by_rank(quantity: Quantity, number: &Value) -> Value {
+    let list = |items: Value| json!({ "type": "array", "items": items });
+    match quantity.rank() {
+        0 => number.clone(),
+        1 => list(number.clone()),
+        _ => list(list(number.clone())),
+    }
+}
+
+/// The schema of a step whose values have a schema each.
+fn step(leaf: &dyn Fn(Quantity) -> Value) -> Value {
+    let mut of_all = properties(false, leaf);
+    of_all.insert("step".into(), json!({ "type": "integer", "minimum": 1 }));
+    let modes = json!({ "type": "array", "items": object(properties(true, leaf)) });
+    of_all.insert("modes".into(), modes);
+    let mut schema = object(of_all);
+    schema["required"] = json!(["step"]);
+    schema
+}
+
+fn object(properties: Map<String, Value>) -> Value {
+    json!({ "type": "object", "properties": properties, "additionalProperties": false })
+}
+
+/// The properties for the quantities of a mode, or of all modes together.
+fn properties(is_of_mode: bool, leaf: &dyn Fn(Quantity) -> Value) -> Map<String, Value> {
+    let mut properties = Map::new();
+    for quantity in Quantity::ALL
+        .into_iter()
+        .filter(|quantity| quantity.is_of_mode() == is_of_mode)
+    {
+        let mut value = leaf(quantity);
+        value["description"] = json!(quantity.equation());
+        match quantity.name().split_once('.') {
+            None => {
+                properties.insert(quantity.name().to_owned(), value);
+            }
+            Some((outer, inner)) => {
+                let nested = properties.entry(outer).or_insert_with(|| object(Map::new()));
+                nested["properties"][inner] = value;
+            }
+        }
+    }
+    properties
+}

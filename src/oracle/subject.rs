@@ -1,0 +1,351 @@
+//! The program under test, whatever it is: what it says of itself, and what it answers.
+//!
+//! After this file the reader knows the trait by which a filter in Rust is checked from its own tests; a process
+//! ([`super::process`]) and a folder of answers ([`super::folder`]) implement the same.
+
+use super::invalid::Invalid;
+use super::problem::ProblemFile;
+use super::run::Computed;
+use super::setup::Setup;
+use super::shape::{self, Work};
+use super::trace::{Dimensions, Trace};
+use super::variant;
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+/// The precision in which a program computes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Precision {
+    /// 53 bits.
+    Double,
+    /// 24 bits.
+    Single,
+    /// So many decimal digits.
+    DecimalDigits(u32),
+}
+
+impl Precision {
+    /// The unit roundoff: half the distance of 1 from the next number.
+    pub fn unit_roundoff(self) -> f64 {
+        match self {
+            Self::Double => f64::EPSILON / 2.0,
+            Self::Single => f64::from(f32::EPSILON) / 2.0,
+            Self::DecimalDigits(digits) => (0..digits).fold(5.0, |unit, _| unit / 10.0),
+        }
+    }
+}
+
+impl std::fmt::Display for Precision {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self {
+            Self::Double => write!(f, "double precision"),
+            Self::Single => write!(f, "single precision"),
+            Self::DecimalDigits(digits) => write!(f, "{digits} decimal digits"),
+        }
+    }
+}
+
+/// What a program says of itself.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ready {
+    /// Its name.
+    pub name: String,
+    /// Its precision.
+    pub precision: Precision,
+    /// Its conventions where they differ from the cases'.
+    pub conventions: BTreeMap<String, String>,
+    /// The filters it has, by [`FilterFile::name`](super::problem::FilterFile::name); none means all.
+    pub kinds: Option<Vec<String>>,
+    /// The echo's matrix times its vector.
+    pub echo: Option<Vec<f64>>,
+    /// Whether it checks its input.
+    pub validates: bool,
+}
+
+impl Default for Ready {
+    fn default() -> Self {
+        Self {
+            name: "unnamed".into(),
+            precision: Precision::Double,
+            conventions: BTreeMap::new(),
+            kinds: None,
+            echo: None,
+            validates: true,
+        }
+    }
+}
+
+/// The echo: a matrix that is not square, by rows, and a vector.
+pub const ECHO: ([[f64; 3]; 2], [f64; 3]) = ([[1.0, 2.0, 3.0], [4.0, 5.0, 7.0]], [1.0, 10.0, 100.0]);
+
+impl Ready {
+    /// Reads the message.
+    ///
+    /// # Errors
+    ///
+    /// The reason why it cannot be understood.
+    pub fn read(message: &Value) -> Result<Self, String> {
+        let mut ready = Self::default();
+        let object = message.as_object().ok_or("the ready message is not an object")?;
+        for (key, value) in object {
+            match key.as_str() {
+                "type" | "fields" => {}
+                "name" => ready.name = value.as_str().ok_or("`name` is not a string")?.to_owned(),
+                "precision" => ready.precision = read_precision(value)?,
+                "conventions" => ready.conventions = read_conventions(value)?,
+                "kinds" => {
+                    let names = value.as_array().ok_or("`kinds` is not a list")?;
+                    let names = names.iter().map(|name| name.as_str().map(str::to_owned));
+                    ready.kinds = Some(
+                        names
+                            .collect::<Option<_>>()
+                            .ok_or("`kinds` has an entry that is not a string")?,
+                    );
+                }
+                "echo" => {
+                    let list = value.as_array().ok_or("`echo` is not a list")?;
+                    ready.echo = Some(list.iter().flat_map(numbers_of).collect());
+                }
+                "validates" => ready.validates = value.as_bool().ok_or("`validates` is not true or false")?,
+                _ => return Err(format!("`{key}` is not a key of the ready message")),
+            }
+        }
+        Ok(ready)
+    }
+}
+
+/// The numbers of a value, whether it is one or a list.
+fn numbers_of(value: &Value) -> Vec<f64> {
+    match value {
+        Value::Array(list) => list.iter().flat_map(numbers_of).collect(),
+        value => vec![value.as_f64().unwrap_or(f64::NAN)],
+    }
+}
+
+fn read_precision(value: &Value) -> Result<Precision, String> {
+    if let Some(word) = value.as_str() {
+        return match word {
+            "double" => Ok(Precision::Double),
+            "single" => Ok(Precision::Single),
+            _ => Err(format!(
+                "precision {word:?} is not \"double\", \"single\" or {{\"decimal_digits\": …}}"
+            )),
+        };
+    }
+    value
+        .get("decimal_digits")
+        .and_then(Value::as_u64)
+        .and_then(|digits| u32::try_from(digits).ok())
+        .filter(|digits| (2..=15).contains(digits))
+        .map(Precision::DecimalDigits)
+        .ok_or_else(|| "`precision.decimal_digits` is not a number from 2 to 15".into())
+}
+
+fn read_conventions(value: &Value) -> Result<BTreeMap<String, String>, String> {
+    // MATLAB and Octave write an empty object as an empty list.
+    if value.as_array().is_some_and(Vec::is_empty) {
+        return Ok(BTreeMap::new());
+    }
+    let object = value.as_object().ok_or("`conventions` is not an object")?;
+    object
+        .iter()
+        .map(|(key, value)| {
+            let value = value
+                .as_str()
+                .ok_or_else(|| format!("convention `{key}` is not a string"))?;
+            Ok((key.clone(), value.to_owned()))
+        })
+        .collect()
+}
+
+/// What a program answers to a problem.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Answer {
+    /// Values, and an error if it could not go on.
+    Steps {
+        /// What it shows.
+        trace: Trace,
+        /// Why it stopped.
+        error: Option<String>,
+    },
+    /// It does not do such problems.
+    Skipped {
+        /// Why.
+        reason: String,
+    },
+    /// It refuses the problem.
+    Rejected {
+        /// The class of the reason, in its own words.
+        class: String,
+        /// The reason.
+        reason: String,
+    },
+    /// It did not answer as it should.
+    Broken(Broken),
+}
+
+/// An answer that is none.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum Broken {
+    /// Nothing came in time.
+    #[error("no answer within {seconds} s{hint}")]
+    TimedOut {
+        /// The limit.
+        seconds: u64,
+        /// What may be the cause.
+        hint: String,
+    },
+    /// The program ended.
+    #[error("the program ended ({status}){stderr}")]
+    Crashed {
+        /// Its exit status.
+        status: String,
+        /// What it last wrote to standard error.
+        stderr: String,
+    },
+    /// A line that is not a message.
+    #[error("not a message: {reason}: {line}")]
+    Garbage {
+        /// The beginning of the line.
+        line: String,
+        /// Why.
+        reason: String,
+    },
+    /// The answer to another case.
+    #[error("asked for `{asked}`, answered `{answered}`")]
+    OutOfOrder {
+        /// The case that was asked for.
+        asked: String,
+        /// The case that was answered.
+        answered: String,
+    },
+    /// The trace cannot be read.
+    #[error("{0}")]
+    Invalid(Invalid),
+    /// A program that cannot be started.
+    #[error("{0}")]
+    NotStarted(String),
+}
+
+/// A filter under test.
+pub trait Subject {
+    /// Introduces itself.
+    ///
+    /// # Errors
+    ///
+    /// [`Broken`] when it cannot be used.
+    fn start(&mut self) -> Result<Ready, Broken>;
+
+    /// Runs a problem.
+    fn run(&mut self, problem: &ProblemFile) -> Answer;
+
+    /// Ends; what was strange on the way, a sentence each.
+    fn stop(&mut self) -> Vec<String> {
+        Vec::new()
+    }
+}
+
+/// How much of a trace is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Level {
+    /// Everything.
+    Everything,
+    /// What the next step needs, and the combined estimate: updated estimates and mode probabilities.
+    Posteriors,
+    /// The combined estimate alone.
+    Combined,
+}
+
+impl Level {
+    /// All levels, from most to least.
+    pub const ALL: [Self; 3] = [Self::Everything, Self::Posteriors, Self::Combined];
+
+    /// Whether a quantity is shown.
+    pub fn shows(self, quantity: crate::imm::Quantity) -> bool {
+        use crate::imm::Quantity::{
+            CombinedCovariance, CombinedMean, ModeProbabilities, UpdatedCovariance, UpdatedMean,
+        };
+        match self {
+            Self::Everything => true,
+            Self::Posteriors => matches!(
+                quantity,
+                UpdatedMean | UpdatedCovariance | ModeProbabilities | CombinedMean | CombinedCovariance
+            ),
+            Self::Combined => matches!(quantity, CombinedMean | CombinedCovariance),
+        }
+    }
+}
+
+/// This crate's own filter in doubles, with variants of the catalogue planted in it: the judge is tested on it.
+#[derive(Debug, Clone)]
+pub struct Planted {
+    /// The variants.
+    pub variants: Vec<String>,
+    /// How much it shows.
+    pub level: Level,
+}
+
+impl Subject for Planted {
+    fn start(&mut self) -> Result<Ready, Broken> {
+        Ok(Ready {
+            name: if self.variants.is_empty() {
+                "Immaculate's own filter".into()
+            } else {
+                format!("Immaculate's own filter with {}", self.variants.join(" and "))
+            },
+            echo: Some(
+                ECHO.0
+                    .iter()
+                    .map(|row| row.iter().zip(ECHO.1).map(|(a, b)| a * b).sum())
+                    .collect(),
+            ),
+            ..Ready::default()
+        })
+    }
+
+    fn run(&mut self, problem: &ProblemFile) -> Answer {
+        if let Err(invalid) = problem.check() {
+            return Answer::Rejected {
+                class: invalid.class.name().into(),
+                reason: invalid.to_string(),
+            };
+        }
+        let (n, m, _) = problem.dimensions();
+        match shape::dispatch(n, m, RunPlanted { problem, planted: self }) {
+            Ok(Ok(answer)) => answer,
+            Ok(Err(invalid)) | Err(invalid) => Answer::Broken(Broken::Invalid(invalid)),
+        }
+    }
+}
+
+/// Runs a problem in doubles with variants.
+struct RunPlanted<'a> {
+    problem: &'a ProblemFile,
+    planted: &'a Planted,
+}
+
+impl Work for RunPlanted<'_> {
+    type Output = Result<Answer, Invalid>;
+
+    fn run<const N: usize, const M: usize>(self) -> Self::Output {
+        let mut setup: Setup<f64, N, M> = self.problem.setup(|value| value)?;
+        for id in &self.planted.variants {
+            variant::apply(id, &mut setup);
+        }
+        let Computed { values, failures } = setup.run();
+        let dimensions: Dimensions = setup.dimensions();
+        let mut trace = Trace::empty(dimensions);
+        for (step, quantity, mode) in values.all_places() {
+            let Some(value) = values.get(step, quantity, mode) else {
+                continue;
+            };
+            if self.planted.level.shows(quantity) {
+                trace.set(step, quantity, mode, value.clone());
+            }
+        }
+        Ok(Answer::Steps {
+            trace,
+            error: failures.first().map(ToString::to_string),
+        })
+    }
+}

@@ -1,0 +1,121 @@
+//! The published cases for people.
+
+use super::{table, wrapped};
+use crate::oracle::case::{BadCase, Case, Expected};
+use crate::oracle::certify::Certified;
+use crate::oracle::published::FLAGS;
+use comfy_table::CellAlignment;
+use serde_json::{Value, json};
+use std::fmt::Write;
+use std::time::Duration;
+
+/// One line a case, and the flags.
+pub fn list(cases: &[&Case]) -> String {
+    let mut table = table(&["case", "n", "m", "modes", "steps", "filter", "flags"]);
+    for column in table.column_iter_mut().skip(5) {
+        column.set_cell_alignment(CellAlignment::Left);
+    }
+    for case in cases {
+        let problem = &case.problem;
+        let (n, m, r) = problem.dimensions();
+        table.add_row(vec![
+            problem.id.clone(),
+            n.to_string(),
+            m.to_string(),
+            r.to_string(),
+            problem.measurements.len().to_string(),
+            problem.filter.name().to_owned(),
+            problem.flags.join(" "),
+        ]);
+    }
+    let mut text = format!("{table}\n{} cases. The flags:\n", cases.len());
+    for (flag, meaning) in FLAGS {
+        if cases
+            .iter()
+            .any(|case| case.problem.flags.iter().any(|own| own == flag))
+        {
+            text.push_str(&wrapped(&format!("{flag}: {meaning}"), "  "));
+        }
+    }
+    text
+}
+
+/// A case in full.
+pub fn show(case: &Case) -> String {
+    let mut text = format!("{}\n", case.problem.id);
+    text.push_str(&wrapped(&case.problem.about, "  "));
+    let _ = write!(text, "\n{}\n{}", case.problem_text, case.trace_text);
+    text
+}
+
+/// A case that was verified, with what came of it and the time it took.
+pub type Verified<'a> = (&'a &'a Case, Result<Option<Certified>, BadCase>, Duration);
+
+/// What became of proving cases again.
+pub fn verified(outcomes: &[Verified]) -> String {
+    let mut table = table(&["case", "steps", "values", "bits", "digits left", "time (s)"]);
+    let mut wrong = String::new();
+    let (mut values, mut good) = (0, 0);
+    for (case, outcome, time) in outcomes {
+        let id = case.problem.id.clone();
+        let seconds = format!("{:.2}", time.as_secs_f64());
+        match outcome {
+            Ok(Some(certified)) => {
+                good += 1;
+                let count: usize = numbers(certified);
+                values += count;
+                let (steps, bits) = (case.problem.measurements.len(), certified.bits);
+                table.add_row(vec![
+                    id,
+                    steps.to_string(),
+                    count.to_string(),
+                    bits.to_string(),
+                    certified.digits.to_string(),
+                    seconds,
+                ]);
+            }
+            Ok(None) => {
+                good += 1;
+                let Expected::Rejection(class) = case.expected else {
+                    continue;
+                };
+                table.add_row(vec![id, format!("rejected: {}", class.name())]);
+            }
+            Err(bad) => wrong.push_str(&wrapped(&format!("WRONG  {bad}"), "")),
+        }
+    }
+    format!(
+        "{table}\n{wrong}{good} of {} cases proven again: {values} numbers, each the double nearest to the exact value\n",
+        outcomes.len()
+    )
+}
+
+fn numbers(certified: &Certified) -> usize {
+    certified
+        .trace
+        .all_places()
+        .filter_map(|(step, quantity, mode)| certified.trace.get(step, quantity, mode))
+        .map(Vec::len)
+        .sum()
+}
+
+/// The same as JSON.
+pub fn verified_json(outcomes: &[Verified]) -> Value {
+    let cases: Vec<Value> = outcomes
+        .iter()
+        .map(|(case, outcome, time)| {
+            let certified = outcome.as_ref().ok().and_then(Option::as_ref);
+            json!({
+                "id": case.problem.id,
+                "proven": outcome.is_ok(),
+                "wrong": outcome.as_ref().err().map(ToString::to_string),
+                "steps": case.problem.measurements.len(),
+                "values": certified.map(numbers),
+                "bits": certified.map(|certified| certified.bits),
+                "digits_left": certified.map(|certified| certified.digits),
+                "seconds": time.as_secs_f64(),
+            })
+        })
+        .collect();
+    json!({ "cases": cases })
+}

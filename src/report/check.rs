@@ -1,0 +1,399 @@
+//! The verdict on a program under test, for people and as JSON.
+//!
+//! After this file the reader knows how a verdict looks: the cases, the faults by equation, what was done, and last the sentence that
+//! matters.
+
+use super::{table, wrapped};
+use crate::imm::Quantity;
+use crate::oracle::check::{CaseReport, Outcome, Report};
+use crate::oracle::diagnose::Diagnosis;
+use crate::oracle::judge::{Finding, Judged};
+use crate::oracle::variant::{Kind, Variant};
+use serde_json::{Value, json};
+use std::fmt::Write;
+
+/// The whole report.
+pub fn text(report: &Report) -> String {
+    let mut text = cases(report);
+    text.push_str(&faults(report));
+    for failure in failures(report) {
+        text.push_str(&wrapped(&failure, "  "));
+    }
+    text.push_str(&diagnosis(&report.diagnosis));
+    for remark in &report.remarks {
+        text.push_str(&wrapped(&format!("REMARK  {remark}"), ""));
+    }
+    text.push_str(&coverage(report));
+    text.push_str(&summary(report));
+    text
+}
+
+/// What a case's outcome is called.
+fn words(outcome: &Outcome) -> &'static str {
+    match outcome {
+        Outcome::Right => "right",
+        Outcome::Wrong => "WRONG",
+        Outcome::CannotTell => "cannot tell",
+        Outcome::Rejected { .. } => "rejected, as it must be",
+        Outcome::NotRejected => "NOT REJECTED",
+        Outcome::WronglyRejected { .. } => "REJECTED",
+        Outcome::Skipped { .. } => "skipped",
+        Outcome::NothingShown => "NOTHING SHOWN",
+        Outcome::Stopped { .. } => "STOPPED",
+        Outcome::Broken(_) => "NO ANSWER",
+    }
+}
+
+/// The reason that an outcome carries.
+fn reason(outcome: &Outcome) -> Option<String> {
+    match outcome {
+        Outcome::Rejected {
+            other_class: Some(class),
+        } => Some(format!("for another reason: {class:?}")),
+        Outcome::WronglyRejected { reason } | Outcome::Skipped { reason } | Outcome::Stopped { reason } => {
+            Some(reason.clone())
+        }
+        Outcome::Broken(broken) => Some(broken.to_string()),
+        Outcome::NotRejected => Some("the problem is wrong and was run all the same".into()),
+        _ => None,
+    }
+}
+
+/// One line a case: what was judged and to how many digits.
+fn cases(report: &Report) -> String {
+    let mut table = table(&["case", "verdict", "judged", "digits"]);
+    for case in &report.cases {
+        let judged = if case.of == 0 {
+            String::new()
+        } else {
+            format!("{} of {}", case.judged, case.of)
+        };
+        let digits = case.digits.map_or(String::new(), |digits| format!("{digits:.1}"));
+        table.add_row(vec![case.id.clone(), words(&case.outcome).to_owned(), judged, digits]);
+    }
+    let mut text = format!("{table}\n");
+    for case in &report.cases {
+        if let Some(reason) = reason(&case.outcome) {
+            text.push_str(&wrapped(&format!("{}: {reason}", case.id), "  "));
+        }
+    }
+    text
+}
+
+/// The faults by equation: how many, and the first in full.
+fn faults(report: &Report) -> String {
+    let mut text = String::new();
+    for quantity in Quantity::ALL {
+        let faults: Vec<(&CaseReport, &Judged)> = report
+            .faults()
+            .filter(|(_, judged)| judged.place.1 == quantity)
+            .collect();
+        let Some((case, judged)) = faults.first() else { continue };
+        let mut cases: Vec<&str> = faults.iter().map(|(case, _)| case.id.as_str()).collect();
+        cases.dedup();
+        let _ = writeln!(text, "\nFAULT  {}  —  {}", quantity.name(), quantity.equation());
+        text.push_str(&wrapped(&first_fault(case, judged, report), "  "));
+        if !judged.hidden.is_empty() {
+            let names: Vec<&str> = judged.hidden.iter().map(|quantity| quantity.name()).collect();
+            let sentence = format!(
+                "The fault is in this equation or in one before it that is not shown: {}.",
+                names.join(", ")
+            );
+            text.push_str(&wrapped(&sentence, "  "));
+        }
+        if faults.len() > 1 {
+            let others = cases.len() - 1;
+            let sentence = format!(
+                "And {} more of these values, in this case and {others} others.",
+                faults.len() - 1
+            );
+            text.push_str(&wrapped(&sentence, "  "));
+        }
+    }
+    text
+}
+
+/// The place of a number inside its quantity.
+fn entry(judged: &Judged, index: usize, report: &CaseReport) -> String {
+    let quantity = judged.place.1;
+    let columns = report.columns(quantity);
+    match quantity.rank() {
+        0 => String::new(),
+        1 => format!("[{index}]"),
+        _ => format!("[{}][{}]", index / columns, index % columns),
+    }
+}
+
+fn first_fault(case: &CaseReport, judged: &Judged, report: &Report) -> String {
+    let (step, quantity, mode) = judged.place;
+    let of_mode = if quantity.is_of_mode() {
+        format!(", mode {mode}")
+    } else {
+        String::new()
+    };
+    let place = format!("{}, step {step}{of_mode}", case.id);
+    let Some(own) = judged.own else {
+        return format!("{place}: the value is not finite.");
+    };
+    if judged.finding == Finding::NotFinite {
+        return format!(
+            "{place}: the value is not finite; from the program's own values it is {}.",
+            own.expected
+        );
+    }
+    let noise = if own.ratio.is_finite() {
+        format!("{:.0e} times", own.ratio)
+    } else {
+        "infinitely many times".into()
+    };
+    format!(
+        "{place}: {}{} is {}, and from the program's own values before it it should be {}: off by {:.2e} of its unit, {noise} the rounding noise of {}.",
+        quantity.name(),
+        entry(judged, own.index, case),
+        own.shown,
+        own.expected,
+        own.size,
+        report.ready.precision,
+    )
+}
+
+/// Steps whose equations have no answer on the program's own values.
+fn failures(report: &Report) -> Vec<String> {
+    report
+        .cases
+        .iter()
+        .filter(|case| case.outcome.is_wrong())
+        .filter_map(|case| {
+            let failure = case.judgement.as_ref()?.failures.first()?;
+            Some(format!("{}: on the program's own values, {failure}.", case.id))
+        })
+        .collect()
+}
+
+/// A kind in a sentence.
+fn kind(variant: &Variant) -> &'static str {
+    match variant.kind {
+        Kind::Mistake => "mistake",
+        Kind::Convention => "another convention, not a mistake",
+        Kind::Form => "another form of the same equation, right",
+    }
+}
+
+fn diagnosis(diagnosis: &Diagnosis) -> String {
+    let mut text = String::new();
+    let one = |variant: &Variant| format!("{}  ({}; {})", variant.about, variant.id, kind(variant));
+    match diagnosis {
+        Diagnosis::Nothing => return text,
+        Diagnosis::One(variants) => {
+            text.push_str("\nMOST LIKELY\n");
+            for variant in variants {
+                text.push_str(&wrapped(&one(variant), "  "));
+            }
+            text.push_str(
+                "  With this, every value that was shown is explained by the program's own values before it.\n",
+            );
+            if variants.len() > 1 {
+                text.push_str("  These cannot be told apart by what was shown.\n");
+            }
+        }
+        Diagnosis::Two(pairs) => {
+            text.push_str("\nMOST LIKELY, TWO AT ONCE\n");
+            for [first, second] in pairs.iter().take(5) {
+                text.push_str(&wrapped(&one(first), "  "));
+                text.push_str(&wrapped(&format!("and {}", one(second)), "    "));
+            }
+            text.push_str(
+                "  With both, every value that was shown is explained by the program's own values before it.\n",
+            );
+            if pairs.len() > 1 {
+                let _ = writeln!(
+                    text,
+                    "  These {} pairs cannot be told apart by what was shown.",
+                    pairs.len()
+                );
+            }
+        }
+        Diagnosis::Unknown { best, explained, of } => {
+            text.push_str("\nCAUSE  Nothing in the catalogue, alone or in pairs, explains every value.\n");
+            if !best.is_empty() {
+                let _ = writeln!(
+                    text,
+                    "  Alone, these explain {explained} of the {of} cases with a fault:"
+                );
+                for variant in best.iter().take(5) {
+                    text.push_str(&wrapped(&one(variant), "    "));
+                }
+            }
+        }
+    }
+    text
+}
+
+/// What was judged and what was not.
+fn coverage(report: &Report) -> String {
+    let (judged, of) = counts(report);
+    let mut text = format!("\nCOVERAGE  {judged} of {of} values of the cases that were asked for were judged.\n");
+    if !report.hidden.is_empty() {
+        let names: Vec<&str> = report.hidden.iter().map(|quantity| quantity.name()).collect();
+        let sentence = format!(
+            "Never shown: {}. A mistake there is seen only by what follows from it, and what was right there by chance or \
+             cancels later is not seen at all.",
+            names.join(", ")
+        );
+        text.push_str(&wrapped(&sentence, "  "));
+    }
+    if report.not_asked > 0 {
+        let sentence = format!(
+            "{} cases were not asked for: filters that the program does not have, or input that it leaves to its caller to check.",
+            report.not_asked
+        );
+        text.push_str(&wrapped(&sentence, "  "));
+    }
+    match report.echo {
+        None => {
+            text.push_str("  The program gave no echo: whether it reads matrices by rows is seen by the cases only.\n")
+        }
+        Some(true) => {}
+        Some(false) => text.push_str(
+            "  ECHO WRONG: matrix times vector is not what it should be. Does the program read matrices by columns?\n",
+        ),
+    }
+    text
+}
+
+fn counts(report: &Report) -> (usize, usize) {
+    let sum = |of: fn(&CaseReport) -> usize| report.cases.iter().map(of).sum();
+    (sum(|case| case.judged), sum(|case| case.of))
+}
+
+/// The sentence that matters.
+fn summary(report: &Report) -> String {
+    let count = |is: fn(&Outcome) -> bool| report.cases.iter().filter(|case| is(&case.outcome)).count();
+    let right = count(|outcome| matches!(outcome, Outcome::Right | Outcome::Rejected { .. }));
+    let wrong = count(Outcome::is_wrong);
+    let skipped = count(|outcome| matches!(outcome, Outcome::Skipped { .. }));
+    let cannot_tell = count(|outcome| matches!(outcome, Outcome::CannotTell));
+    let parts: Vec<String> = [
+        (right, "right"),
+        (wrong, "wrong"),
+        (cannot_tell, "drowned in rounding noise"),
+        (skipped, "skipped"),
+    ]
+    .into_iter()
+    .filter(|(number, _)| *number > 0)
+    .map(|(number, word)| format!("{number} {word}"))
+    .collect();
+    let digits = report.cases.iter().filter_map(|case| case.digits).reduce(f64::min);
+    let digits = digits.map_or(String::new(), |digits| {
+        format!("; right values to {digits:.1} digits or more")
+    });
+    let verdict = match (&report.diagnosis, report.is_wrong()) {
+        (_, true) => "WRONG",
+        (Diagnosis::Nothing, false) if right == 0 => "NOTHING JUDGED",
+        (Diagnosis::Nothing, false) => "RIGHT",
+        (_, false) => "RIGHT, but otherwise (see above)",
+    };
+    let name = &report.ready.name;
+    let sentence = format!(
+        "{verdict}  {name}, {}: of {} cases {}{digits}",
+        report.ready.precision,
+        report.cases.len(),
+        parts.join(", ")
+    );
+    format!("\n{}", wrapped(&sentence, ""))
+}
+
+/// The report as JSON.
+pub fn json(report: &Report) -> Value {
+    let (judged, of) = counts(report);
+    let names = |quantities: &[Quantity]| -> Vec<&str> { quantities.iter().map(|quantity| quantity.name()).collect() };
+    let cases: Vec<Value> = report
+        .cases
+        .iter()
+        .map(|case| {
+            let values = case.judgement.iter().flat_map(|judgement| &judgement.values);
+            let unusual: Vec<Value> = values
+                .filter(|value| value.finding != Finding::Right)
+                .map(|value| value_json(value, &names))
+                .collect();
+            json!({
+                "id": case.id,
+                "verdict": words(&case.outcome).to_lowercase(),
+                "reason": reason(&case.outcome),
+                "wrong": case.outcome.is_wrong(),
+                "judged": case.judged,
+                "of": case.of,
+                "digits": case.digits,
+                "not_simply_right": unusual,
+                "failures": case.judgement.as_ref().map(|judgement| &judgement.failures),
+            })
+        })
+        .collect();
+    json!({
+        "format": "immaculate-report/1",
+        "name": report.ready.name,
+        "precision": report.ready.precision.to_string(),
+        "conventions": report.ready.conventions,
+        "wrong": report.is_wrong(),
+        "echo": report.echo,
+        "judged": judged,
+        "of": of,
+        "not_asked": report.not_asked,
+        "never_shown": names(&report.hidden),
+        "diagnosis": diagnosis_json(&report.diagnosis),
+        "remarks": report.remarks,
+        "cases": cases,
+    })
+}
+
+fn value_json(value: &Judged, names: &dyn Fn(&[Quantity]) -> Vec<&'static str>) -> Value {
+    let (step, quantity, mode) = value.place;
+    json!({
+        "step": step,
+        "quantity": quantity.name(),
+        "mode": quantity.is_of_mode().then_some(mode),
+        "equation": quantity.equation(),
+        "finding": finding(value.finding),
+        "error_in_units": value.error,
+        "own": value.own.map(|own| json!({
+            "entry": own.index,
+            "shown": own.shown,
+            "expected": own.expected,
+            "noise_ratio": own.ratio,
+            "error_in_units": own.size,
+        })),
+        "hidden": names(&value.hidden),
+    })
+}
+
+/// What a finding is called.
+fn finding(finding: Finding) -> &'static str {
+    match finding {
+        Finding::Right => "right",
+        Finding::Propagated => "propagated",
+        Finding::CannotTell => "cannot tell",
+        Finding::Undetermined => "undetermined",
+        Finding::Stale => "shown without a detection",
+        Finding::NotFinite => "not finite",
+        Finding::Fault => "fault",
+    }
+}
+
+fn diagnosis_json(diagnosis: &Diagnosis) -> Value {
+    let one = |variant: &Variant| json!({ "id": variant.id, "kind": kind(variant), "about": variant.about });
+    match diagnosis {
+        Diagnosis::Nothing => Value::Null,
+        Diagnosis::One(variants) => {
+            json!({ "any_of": variants.iter().map(|variant| vec![one(variant)]).collect::<Vec<_>>() })
+        }
+        Diagnosis::Two(pairs) => {
+            json!({ "any_of": pairs.iter().map(|pair| pair.map(one)).collect::<Vec<_>>() })
+        }
+        Diagnosis::Unknown { best, explained, of } => json!({
+            "any_of": [],
+            "best": best.iter().map(|variant| one(variant)).collect::<Vec<_>>(),
+            "explained": explained,
+            "of": of,
+        }),
+    }
+}

@@ -1,0 +1,59 @@
+//! A trace for people: step by step, every value under its name, with the equations that give it.
+
+use crate::imm::Quantity;
+use crate::oracle::problem::ProblemFile;
+use crate::oracle::trace::{Dimensions, Table};
+use std::fmt::Write;
+
+/// The trace of a problem, its numbers already written.
+pub fn text(problem: &ProblemFile, values: &Table<Vec<String>>) -> String {
+    let Dimensions { n, m, r, steps } = values.dimensions;
+    let mut text = format!("{}  —  {}\n", problem.id, problem.about);
+    let _ = writeln!(
+        text,
+        "state {} in {}",
+        problem.state.join(", "),
+        problem.units.join(", ")
+    );
+    for step in 1..=steps {
+        let detection = match problem.measurements.get(step - 1).and_then(|entry| entry.z.as_ref()) {
+            Some(z) => format!("z = {z:?}"),
+            None => "no detection".into(),
+        };
+        let _ = writeln!(text, "\nstep {step}: {detection}");
+        for quantity in Quantity::ALL {
+            let modes = if quantity.is_of_mode() { r } else { 1 };
+            if values.get(step, quantity, 0).is_none() {
+                continue;
+            }
+            let _ = writeln!(text, "  {}  —  {}", quantity.name(), quantity.equation());
+            for mode in 0..modes {
+                let Some(numbers) = values.get(step, quantity, mode) else {
+                    continue;
+                };
+                let label = if quantity.is_of_mode() {
+                    problem.modes[mode].name.as_str()
+                } else {
+                    ""
+                };
+                let columns = if quantity.rank() == 2 {
+                    quantity.shape(n, m, r).1
+                } else {
+                    numbers.len()
+                };
+                write_rows(&mut text, label, numbers, columns);
+            }
+        }
+    }
+    text
+}
+
+/// Rows of numbers in columns, with a label before the first.
+fn write_rows(text: &mut String, label: &str, numbers: &[String], columns: usize) {
+    let width = numbers.iter().map(|number| number.chars().count()).max().unwrap_or(0);
+    for (index, row) in numbers.chunks(columns).enumerate() {
+        let label = if index == 0 { label } else { "" };
+        let row: Vec<String> = row.iter().map(|number| format!("{number:>width$}")).collect();
+        let _ = writeln!(text, "    {label:<20} {}", row.join("  "));
+    }
+}
