@@ -4,7 +4,7 @@
 //! next to zero and one, steps without a detection, and measurements that no mode explains.
 
 use super::draft::{covariance, estimate, mode, rows};
-use super::scene::{PLANE_TRACK, RADAR_TRACK, axis, plane, radar, scalar};
+use super::scene::{PLANE_TRACK, axis, plane, radar, scalar};
 use crate::oracle::problem::{EstimateFile, ProblemFile};
 
 /// The problems of this file.
@@ -154,12 +154,6 @@ fn missed() -> Vec<ProblemFile> {
             &in_a_row,
             "Four steps and no detection at all: range and bearing play no part, the probabilities follow the chain, and a fifth-degree \
              filter predicts as the Kalman filter does.",
-        ),
-        radar("simplex-5").sees(&RADAR_TRACK[..5]).without(&[2, 3]).named(
-            "missed.range-bearing",
-            &in_a_row,
-            "Two of five steps have no range and bearing; after them the uncertainty is larger against the range, and the measurement \
-             more curved.",
         ),
     ]
 }

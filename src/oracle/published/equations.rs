@@ -128,7 +128,7 @@ fn likelihood() -> Vec<ProblemFile> {
         stays(plane()).sees(&[[-20.0, 150.0]]).named(
             "likelihood.small",
             &["single-equation", "likelihood", "floor", "full-correlation"],
-            "A measurement ten standard deviations away: the likelihoods are far below a common floor of 1e-12 and far above the least \
+            "A measurement more than ten standard deviations away: the likelihoods are far below a common floor of 1e-12 and far above the least \
              double. Their ratio decides, and a floor under likelihoods makes them equal.",
         ),
     ]
@@ -211,7 +211,13 @@ fn updates() -> Vec<ProblemFile> {
             &["as-kalman"],
             "The problem of update.kalman with the Gauss-Hermite rule of three nodes, 81 points: the Kalman filter again.",
         ),
-        Draft::new(
+        scaled_update(),
+    ]
+}
+
+/// A small linear problem for an unscented filter with all three parameters.
+fn scaled_update() -> ProblemFile {
+    Draft::new(
             &["x", "vx"],
             &["m", "m/s"],
             vec![(
@@ -228,6 +234,5 @@ fn updates() -> Vec<ProblemFile> {
             &["single-equation", "update", "one-mode", "as-kalman", "negative-weight", "full-correlation"],
             "Position and velocity on a line with the scaled unscented rule, alpha = 0.5 and beta = 2: on a linear problem the three \
              parameters cancel, beta too, since it weighs the centre only, whose difference from the mean is zero.",
-        ),
-    ]
+        )
 }

@@ -86,7 +86,9 @@ fn scaled(draft: Draft, state: [f64; 4], measured: f64) -> Draft {
         }
         problem.noise = map(&problem.noise, |_, _, entry| entry * (measured * measured));
         for z in problem.measurements.iter_mut().filter_map(|entry| entry.z.as_mut()) {
-            z.iter_mut().for_each(|value| *value = rounded(*value * measured));
+            for value in z {
+                *value = rounded(*value * measured);
+            }
         }
     })
 }

@@ -21,11 +21,6 @@ fn linear_steps() -> Vec<ProblemFile> {
             &GENERIC,
             "One step of two Kalman filters of one number: matrices of one entry, which some languages write as numbers.",
         ),
-        axis().keep(&[0, 2]).named(
-            "step.n2-m1.two-modes",
-            &GENERIC,
-            "One step of two Kalman filters of position and velocity with one measured number: an S of one entry and a gain of one column.",
-        ),
         axis().named(
             "step.n2-m1.three-modes",
             &GENERIC,
@@ -150,20 +145,10 @@ fn several() -> Vec<ProblemFile> {
             "Six steps of three Kalman filters: values that are taken from the wrong step, such as mixing after prediction, show from \
              the second step on.",
         ),
-        axis().sees(&[[54.0], [53.0], [66.0], [71.0]]).named(
-            "steps.kalman.scalar-measurement",
-            &flags,
-            "Four steps of three Kalman filters with one measured number: small enough to follow with a pencil.",
-        ),
         radar("cubature-5").sees(&RADAR_TRACK).named(
             "steps.cubature-5",
             &flags,
             "Six steps of three fifth-degree cubature filters with range and bearing.",
-        ),
-        radar("simplex-5").sees(&RADAR_TRACK[..4]).named(
-            "steps.simplex-5",
-            &flags,
-            "Four steps of three fifth-degree simplex filters with range and bearing.",
         ),
         plane().keep(&[0]).sees(&PLANE_TRACK).named(
             "steps.one-mode.kalman",
@@ -174,11 +159,6 @@ fn several() -> Vec<ProblemFile> {
             "steps.one-mode.cubature-3",
             &["sequence", "one-mode", "fresh-points", "full-correlation"],
             "Four steps of one mode with range and bearing: a plain cubature Kalman filter.",
-        ),
-        derivatives(5, "simplex-5").sees(&[[204.0, -0.48], [197.0, -0.39], [215.0, -0.43]]).named(
-            "steps.simplex-5.n5",
-            &flags,
-            "Three steps of two simplex filters with a state of five entries, an odd number.",
         ),
         plane().filter(filter("cubature-5")).sees(&PLANE_TRACK[..3]).named(
             "steps.linear.cubature-5",
