@@ -3,6 +3,8 @@
 //! Method: every problem is checked and run in doubles, and each flag whose meaning can be computed is computed from the problem or from
 //! its run. Kind of evidence: oracle. That the expected values are right is not the question here.
 
+#![allow(clippy::float_cmp, reason = "zeros and ones of a file are exact")]
+
 use immaculate::imm::Quantity;
 use immaculate::number::Real;
 use immaculate::oracle::problem::{FilterFile, MeasurementFile, ProblemFile, Rows};
@@ -280,6 +282,21 @@ fn mirror_images_have_the_same_likelihoods() {
         let image = run(&of(id)).each(Quantity::LogLikelihood);
         for (a, b) in original.iter().zip(&image) {
             approx::assert_relative_eq!(a.2[0], b.2[0], max_relative = relative);
+        }
+    }
+}
+
+#[test]
+fn other_units_give_the_same_probabilities() {
+    let metres = run(&of("steps.kalman")).each(Quantity::ModeProbabilities);
+    for id in ["units.nanometres", "units.gigametres", "units.mixed"] {
+        let image = run(&of(id)).each(Quantity::ModeProbabilities);
+        assert_eq!(image.len(), 3, "{id}");
+        for (a, b) in metres.iter().zip(&image) {
+            for (a, b) in a.2.iter().zip(&b.2) {
+                // The numbers of the file have twelve digits, and three steps cost a few of a double's.
+                approx::assert_relative_eq!(*a, *b, max_relative = 1e-10);
+            }
         }
     }
 }
