@@ -7,7 +7,8 @@
 // Doubles are compared exactly: that they are equal to the last bit is what these laws say.
 #![allow(clippy::float_cmp)]
 
-use immaculate::number::{Field, Polynomial, Rational, RationalFunction, Real, Roots, Surd};
+use immaculate::matrix::is_finite;
+use immaculate::number::{Enclosure, Field, Polynomial, RandomRounding, Rational, RationalFunction, Real, Roots, Surd};
 use nalgebra::{Matrix2, Vector2};
 use num_traits::{One, Zero};
 use proptest::prelude::*;
@@ -206,9 +207,32 @@ fn undecided_is_unequal_to_itself_and_absorbs_every_operation() {
         check_undecided_is_absorbing(&Surd::integer(value));
         check_undecided_is_absorbing(&RationalFunction::integer(value));
         check_undecided_is_absorbing(&f64::integer(value));
+        check_undecided_is_absorbing(&RandomRounding::integer(value));
+        Enclosure::with_precision(60, || check_undecided_is_absorbing(&Enclosure::integer(value)));
     }
     check_undecided_is_absorbing(&root(2));
     check_undecided_is_absorbing(&RationalFunction::unknown("n"));
+}
+
+#[test]
+fn only_a_number_is_decided() {
+    fn law<T: Field>() {
+        for value in [T::zero(), T::one(), -T::one(), T::ratio(2, 3)] {
+            assert!(Field::is_decided(&value) && is_finite(&value), "{value:?}");
+        }
+        assert!(!Field::is_decided(&T::undecided()) && !is_finite(&T::undecided()));
+        // An infinity of doubles is no number either.
+        let quotient = T::one() / T::zero();
+        assert!(!Field::is_decided(&quotient) && !is_finite(&quotient), "{quotient:?}");
+    }
+    law::<f64>();
+    law::<RandomRounding>();
+    law::<Rational>();
+    law::<Surd>();
+    law::<RationalFunction>();
+    Enclosure::with_precision(60, law::<Enclosure>);
+    // An interval minus itself is not zero, and a number all the same.
+    assert!(is_finite(&Enclosure::around(1.0, 0.5)));
 }
 
 #[test]

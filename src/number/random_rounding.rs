@@ -90,7 +90,13 @@ impl RandomRounding {
     pub fn output(self) -> f64 {
         perturbed(self.0).0
     }
+}
 
+#[allow(
+    clippy::trivially_copy_pass_by_ref,
+    reason = "the operators are wired for numbers of any size"
+)]
+impl RandomRounding {
     /// The sum; one with zero is exact.
     fn plus(self, other: &Self) -> Self {
         let sum = self.0 + other.0;
@@ -133,16 +139,19 @@ impl RandomRounding {
 }
 
 /// Whether a factor changes nothing but the sign.
+#[allow(clippy::float_cmp, reason = "only the number one itself is meant")]
 fn is_unit(value: f64) -> bool {
     value.abs() == 1.0
 }
 
-/// The double times 1 + ξ.
+/// The double times 1 + ξ; what is not finite stays what it is.
 fn perturbed(value: f64) -> RandomRounding {
     RandomRounding(NOISE.with_borrow_mut(|noise| match noise {
         // A random integer of 32 bits with a sign, in units of 2u/2³¹.
-        Some(noise) => value + value * (f64::from(noise.generator.next_u32().cast_signed()) * noise.step),
-        None => value,
+        Some(noise) if value.is_finite() => {
+            value + value * (f64::from(noise.generator.next_u32().cast_signed()) * noise.step)
+        }
+        _ => value,
     }))
 }
 

@@ -33,6 +33,9 @@ const SHORT: i64 = 52;
 /// The exponential of arguments up to 2 to this power is computed.
 const LARGEST_EXPONENT_OF_EXP: i64 = 40;
 
+/// The sine of angles up to 2 to this power is computed, so that the number of turns is an integer of 64 bits.
+const LARGEST_ANGLE: i64 = 62;
+
 /// π.
 pub(super) fn pi(precision: i64) -> Option<Ball> {
     let w = precision + GUARD;
@@ -65,11 +68,11 @@ pub(super) fn exp(x: &Ball, precision: i64) -> Option<Ball> {
     }
     let w = (precision + GUARD).min(bits_that_matter(x.radius)).max(LEAST_FIXED);
     let extra = x.middle.top().max(0) + 4;
-    let reduced = reduce(&x.middle, w + extra, &series::ln_2(w + extra));
-    let argument = Dyadic::new(reduced.rest.value, -(w + extra));
+    let reduced = reduce(&x.middle, w + extra, &series::ln_2(w + extra))?;
+    let argument = Dyadic::new(reduced.rest.value.clone(), -(w + extra));
     let mut value = series::exponential(&argument, w);
     // The argument's error, below 2^extra small units, is below a unit; eʳ < 2.
-    value.error += 2 * (reduced.rest.error >> extra) + 2;
+    value.error += 2 * reduced.rest.cut(extra).error;
     let turns = reduced.turns;
     let size = Dyadic::new(&value.value + value.error, turns - w).bound_above();
     let moved = size.times(exponential_minus_one(x.radius));
@@ -191,14 +194,14 @@ pub(super) fn cos(x: &Ball, precision: i64) -> Option<Ball> {
 /// sin(x + q π/2) with so many bits after the point.
 fn circular(x: &Ball, q: i64, fractional: i64, precision: i64) -> Option<Ball> {
     // Nothing is known of an angle that is known to a turn, or so large that reducing it is not worth its bits.
-    if x.radius.top() > 1 || x.middle.top() > 64 {
+    if x.radius.top() > 1 || x.middle.top() > LARGEST_ANGLE {
         return Some(Ball::zero().widened(Bound::power(0)));
     }
     let w = (fractional + GUARD).min(bits_that_matter(x.radius)).max(LEAST_FIXED);
     let extra = x.middle.top().max(0) + 4;
     // π in units of 2^−(v−1) is π/2 in units of 2⁻ᵛ.
     let quarter = series::pi(w + extra - 1);
-    let reduced = reduce(&x.middle, w + extra, &quarter);
+    let reduced = reduce(&x.middle, w + extra, &quarter)?;
     let argument = Dyadic::new(reduced.rest.value.abs(), -(w + extra));
     let (sine, cosine) = series::sine_and_cosine(&argument, w);
     let is_negative = reduced.rest.value.is_negative();
@@ -207,7 +210,7 @@ fn circular(x: &Ball, q: i64, fractional: i64, precision: i64) -> Option<Ball> {
     if (quadrant >= 2) != (quadrant % 2 == 0 && is_negative) {
         value.value = -value.value;
     }
-    value.error += (reduced.rest.error >> extra) + 1;
+    value.error += reduced.rest.cut(extra).error;
     rounded(value, w, x.radius, precision)
 }
 
@@ -217,20 +220,18 @@ struct Reduced {
     rest: Fixed,
 }
 
-/// x − n c with the n that makes it smallest, |x − n c| ≤ c/2 and a little, in units of 2⁻ᵛ. The error: one unit of x, and n times that of c.
-fn reduce(x: &Dyadic, v: i64, constant: &Fixed) -> Reduced {
+/// x − n c with the n that makes it smallest, |x − n c| ≤ c/2 and a little, in units of 2⁻ᵛ; `None` if n is no integer of 64 bits. The
+/// error: one unit of x, and n times that of c.
+fn reduce(x: &Dyadic, v: i64, constant: &Fixed) -> Option<Reduced> {
     let x = x.fixed(v);
     let doubled: BigInt = (&x << 1_u8) + &constant.value;
-    let turns = doubled.div_floor(&(&constant.value << 1_u8));
-    let rest = x - &turns * &constant.value;
-    // The callers' arguments are below 2⁶⁴, those of the exponential below 2⁴⁰, and the constants are above 1/2.
-    let count = u64::try_from(turns.abs()).unwrap_or(u64::MAX);
-    let quadrant = (&turns).mod_floor(&BigInt::from(1_i64 << 62));
-    let turns = i64::try_from(turns).unwrap_or_else(|_| i64::try_from(quadrant).unwrap_or(0));
-    Reduced {
+    let turns = i64::try_from(doubled.div_floor(&(&constant.value << 1_u8))).ok()?;
+    let rest = x - &constant.value * turns;
+    let error = constant.error.checked_mul(turns.unsigned_abs())?.checked_add(1)?;
+    Some(Reduced {
         turns,
-        rest: Fixed::new(rest, constant.error.saturating_mul(count).saturating_add(1)),
-    }
+        rest: Fixed::new(rest, error),
+    })
 }
 
 /// The angle of the point (x, y); `None` if the box of both touches the origin, or may be on either side of the negative x-axis.
@@ -271,14 +272,14 @@ pub(super) fn atan2(y: &Ball, x: &Ball, precision: i64) -> Option<Ball> {
             return angle(&y.middle, &x.middle, moved, precision);
         }
     }
-    hull_of_corners([bottom, top], [left, x.upper()], precision)
+    hull_of_corners(&[bottom, top], &[left, x.upper()], precision)
 }
 
 /// The smallest ball that holds the angles of all four corners.
-fn hull_of_corners(ys: [Dyadic; 2], xs: [Dyadic; 2], precision: i64) -> Option<Ball> {
+fn hull_of_corners(ys: &[Dyadic; 2], xs: &[Dyadic; 2], precision: i64) -> Option<Ball> {
     let mut ends: Option<(Dyadic, Dyadic)> = None;
-    for y in &ys {
-        for x in &xs {
+    for y in ys {
+        for x in xs {
             let corner = angle(y, x, Bound::ZERO, precision)?;
             let (low, high) = (corner.lower(), corner.upper());
             ends = Some(match ends {
@@ -311,8 +312,8 @@ fn hull_of_corners(ys: [Dyadic; 2], xs: [Dyadic; 2], precision: i64) -> Option<B
 
 /// The angle of one point, with what its box adds to the radius; `None` at the origin.
 ///
-/// The greater coordinate is a, the smaller one b: θ₀ = arctan(b/a) is between 0 and π/4, and the angle is a multiple of π/2 with θ₀ added or
-/// taken away.
+/// The greater coordinate is a, the smaller one b: θ₀ = arctan(b/a) is between 0 and π/4, and the angle is a multiple of π/2 with θ₀
+/// added or taken away.
 fn angle(y: &Dyadic, x: &Dyadic, moved: Bound, precision: i64) -> Option<Ball> {
     let (x_size, y_size) = (x.abs(), y.abs());
     let is_steep = y_size.compare(&x_size) == Ordering::Greater;
