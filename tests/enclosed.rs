@@ -438,6 +438,46 @@ fn the_arcus_tangent_contains_its_series_with_remainder() {
     });
 }
 
+/// Where the first term of a series is the result, the next two bracket the truth: x + c₁xᵃ and x + c₁xᵃ + c₂xᵇ.
+fn two_terms(x: &Rational, first: (Rational, u32), second: (Rational, u32)) -> Bracket {
+    let near = x + first.0 * x.pow(first.1);
+    let far = &near + second.0 * x.pow(second.1);
+    if near <= far {
+        Bracket(near, far)
+    } else {
+        Bracket(far, near)
+    }
+}
+
+#[test]
+fn tiny_arguments_contain_their_series_with_remainder() {
+    let sine = |x: &Rational| two_terms(x, (Rational::new(-1, 6), 3), (Rational::new(1, 120), 5));
+    let arctan = |x: &Rational| two_terms(x, (Rational::new(-1, 3), 3), (Rational::new(1, 5), 5));
+    // ln (1 + z) for z > 0.
+    let ln = |z: &Rational| two_terms(z, (Rational::new(-1, 2), 2), (Rational::new(1, 3), 3));
+    repeat(17, 1500, |draw| {
+        let exponent = -i32::try_from(draw.below(120)).unwrap() - 40;
+        let middle = draw.double(10, exponent);
+        // A point, a ball wider than the first term of the remainder, or one that is not.
+        let x = Enclosure::around(
+            middle,
+            (middle * [0.0, 1.0 / 64.0, power_of_two(-150)][draw.below(3) as usize]).abs(),
+        );
+        let (sines, logarithm) = (x.sin(), Enclosure::with_precision(300, || &x + Enclosure::one()).ln());
+        let (one, seven) = (Enclosure::one(), Enclosure::integer(7));
+        for point in draw.points(&x) {
+            assert!(sine(&point).is_inside(&sines), "sin {x}: {sines}");
+            assert!(arctan(&point).is_inside(&x.atan2(&one)), "arctan {x}");
+            let seventh = &point / Rational::integer(7);
+            assert!(arctan(&seventh).is_inside(&x.atan2(&seven)), "arctan ({x})/7");
+            assert!(
+                !point.is_positive() || ln(&point).is_inside(&logarithm),
+                "ln (1 + {x}): {logarithm}"
+            );
+        }
+    });
+}
+
 #[test]
 fn the_circle_number_contains_its_series_with_remainder() {
     for bits in 8..90 {
@@ -836,12 +876,16 @@ fn exponents_far_beyond_doubles_neither_overflow_nor_take_time() {
             assert!(small.sin() > Enclosure::zero() && small.cos().contains(&Rational::one()));
             // Squared again and again: above it is undecided, below it is a ball around zero.
             let (mut above, mut below) = (large, small.clone());
+            let mut power = Enclosure::exact(power_of_two(-1000));
             for _ in 0..80 {
                 above *= above.clone();
                 below *= below.clone();
+                power *= power.clone();
             }
             assert!(!above.is_decided());
-            assert!(below.is_decided() && below.contains(&Rational::zero()) && below.to_f64() == Some(0.0));
+            assert!(below.is_decided() && !below.is_zero() && below.contains(&Rational::zero()));
+            assert!(power.is_decided() && !power.is_zero() && power.contains(&Rational::zero()));
+            assert_eq!(below.to_f64(), Some(0.0));
             let vanishing = Enclosure::exact(-power_of_two(300)).exp();
             assert!(vanishing.contains(&Rational::zero()) && vanishing.to_f64() == Some(0.0));
             let tiny = Enclosure::exact(-power_of_two(39)).exp();

@@ -162,7 +162,8 @@ fn logarithm_near_one(f: &Dyadic, s: i64, w: i64) -> Fixed {
 /// x = n π/2 + r;      |sin X − sin x| ≤ |X − x|,   and within [−1, 1] whatever X is
 /// ```
 ///
-/// Evidence: `sine_and_cosine_contain_their_series_with_remainder`, `images_of_points_are_inside_the_image_of_the_ball`.
+/// Evidence: `sine_and_cosine_contain_their_series_with_remainder`, `tiny_arguments_contain_their_series_with_remainder`,
+/// `images_of_points_are_inside_the_image_of_the_ball`.
 pub(super) fn sin(x: &Ball, precision: i64) -> Option<Ball> {
     let s = -x.middle.top();
     if x.is_zero() {
