@@ -19,7 +19,7 @@
 //! the two in Rust that have the functions (astro-float 0.9, dashu-float 0.6) had defects in theirs. Integers have no rounding that would
 //! have to be trusted: sums and products are exact, quotients and roots have a remainder that shows how far off they are, and a
 //! series is a few lines whose remainder is bounded beside it. It is no slower either: an arcus tangent takes about 0.1 ms
-//! at 512 bits in these libraries and 2 ms at 4096; here it is 0.01 ms at 640 bits and 0.23 ms at 4096 on the same machine.
+//! at 512 bits in these libraries and 2 ms at 4096; here it is 0.01 ms at 640 bits and 0.23 ms at 4096.
 //!
 //! The precision is a scope, [`Enclosure::with_precision`], within which everything happens: a constant that was built with fewer bits
 //! stays as wide as it was, and a default precision would hide that. Outside of a scope arithmetic is [`Field::undecided`].
