@@ -89,6 +89,7 @@ impl Ready {
         let object = message.as_object().ok_or("the ready message is not an object")?;
         for (key, value) in object {
             match key.as_str() {
+                _ if value.is_null() => {}
                 "type" | "fields" => {}
                 "name" => ready.name = value.as_str().ok_or("`name` is not a string")?.to_owned(),
                 "precision" => ready.precision = read_precision(value)?,

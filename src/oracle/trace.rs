@@ -108,15 +108,16 @@ impl<V> Table<V> {
                         continue;
                     };
                     let value = leaf(quantity, value);
-                    let object = if quantity.is_of_mode() {
-                        &mut modes[mode]
+                    if quantity.is_of_mode() {
+                        // The modes stand where the first of their values is computed.
+                        whole.entry("modes").or_insert(Value::Null);
+                        insert(&mut modes[mode], quantity.name(), value);
                     } else {
-                        &mut whole
-                    };
-                    insert(object, quantity.name(), value);
+                        insert(&mut whole, quantity.name(), value);
+                    }
                 }
-                if modes.iter().any(|mode| !mode.is_empty()) {
-                    whole.insert("modes".into(), modes.into_iter().map(Value::Object).collect());
+                if let Some(place) = whole.get_mut("modes") {
+                    *place = modes.into_iter().map(Value::Object).collect();
                 }
                 Value::Object(whole)
             })
