@@ -59,21 +59,15 @@ const FUNCTIONS: [&str; 5] = [
 
 /// Where the sensor and the target are.
 fn of_place<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
-    let mut nowhere = ([PolarComponent::Range; M], [0; 2], [T::zero(), T::zero()]);
-    let (components, position, sensor) = match &mut setup.problem.measurement {
-        Measurement::Polar {
-            components,
-            position,
-            sensor,
-        } => (components, position, sensor),
-        Measurement::Linear(_) => (&mut nowhere.0, &mut nowhere.1, &mut nowhere.2),
+    let mut nowhere = ([0; 2], [T::zero(), T::zero()]);
+    let (position, sensor) = match &mut setup.problem.measurement {
+        Measurement::Polar { position, sensor, .. } => (position, sensor),
+        Measurement::Linear(_) => (&mut nowhere.0, &mut nowhere.1),
     };
     match id {
         "sensor-position-ignored" => *sensor = [T::zero(), T::zero()],
         "sensor-position-added" => *sensor = sensor.clone().map(|coordinate| -coordinate),
         "position-from-the-first-entries" => *position = [0, 1.min(N - 1)],
-        // the range first, whatever the file says
-        "components-in-fixed-order" => components.sort_by_key(|component| *component == PolarComponent::Bearing),
         _ => return false,
     }
     true

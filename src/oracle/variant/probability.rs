@@ -6,7 +6,7 @@ use super::super::setup::Setup;
 use crate::imm::printed::mode_probability_22;
 use crate::imm::probability::{evidence, mode_probability, relative_likelihood};
 use crate::imm::{Problem, Step};
-use crate::number::{Rational, Real};
+use crate::number::Real;
 use std::cmp::Ordering;
 
 /// Applies a variant of the mode probabilities; whether it is one.
@@ -67,11 +67,15 @@ fn of_likelihood<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut 
         "likelihood-floor-1e-300" => *entry = |_, _, now, j| floored(now, j, 10, 300),
         "likelihood-floor-1e-10" => *entry = |_, _, now, j| floored(now, j, 10, 10),
         // ln Lⱼ for Lⱼ
-        "likelihood-not-exponentiated" => *entry = |_, _, now, j| now.log_likelihoods[j].clone(),
+        "likelihood-not-exponentiated" => {
+            *entry = |_, _, now, j| now.log_likelihoods[j].clone();
+            // their sum may be negative, and has no logarithm then
+            equations.log_evidence = |_, _, now| now.evidence.clone();
+        }
         // all below half the smallest double, 2⁻¹⁰⁷⁵: they are zeros, and the predicted probabilities stand
         "vanishing-likelihoods-ignored" => {
             equations.mode_probability = |problem, _, now, j| {
-                let smallest = T::ln(&power(2, 1075));
+                let smallest = log_power(2, 1075);
                 if now.log_likelihoods.iter().all(|logarithm| *logarithm < smallest) {
                     return now.predicted_mode_probabilities[j].clone();
                 }
@@ -87,8 +91,8 @@ fn of_likelihood<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut 
 fn of_result<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
     let entry = &mut setup.equations.mode_probability;
     match id {
-        "probability-floor-1e-3" => *entry = |problem, _, now, j| raised(problem, now, j, 3),
-        "probability-floor-1e-6" => *entry = |problem, _, now, j| raised(problem, now, j, 6),
+        "probability-floor-1e-3" => *entry = |problem, _, now, j| raised(problem, now, j, 1_000),
+        "probability-floor-1e-6" => *entry = |problem, _, now, j| raised(problem, now, j, 1_000_000),
         // 1 for the greatest, 0 for the others
         "most-probable-mode-alone" => {
             *entry = |problem, _, now, j| {
@@ -114,20 +118,20 @@ fn all<T: Real, const N: usize, const M: usize>(problem: &Problem<T, N, M>, now:
 }
 
 /// Λⱼ of likelihoods that are at least base⁻ᵉ.
-fn floored<T: Real, const N: usize, const M: usize>(now: &Step<T, N, M>, j: usize, base: i64, exponent: u32) -> T {
-    let floor = T::ln(&power(base, exponent));
+fn floored<T: Real, const N: usize, const M: usize>(now: &Step<T, N, M>, j: usize, base: i64, exponent: i64) -> T {
+    let floor = log_power(base, exponent);
     let logarithms: Vec<T> = now.log_likelihoods.iter().map(|l| at_least(l, &floor)).collect();
     relative_likelihood(&logarithms, &now.predicted_mode_probabilities, j)
 }
 
-/// μⱼ at least 10⁻ᵉ, and then all divided by their sum.
+/// μⱼ at least 1/n, and then all divided by their sum.
 fn raised<T: Real, const N: usize, const M: usize>(
     problem: &Problem<T, N, M>,
     now: &Step<T, N, M>,
     j: usize,
-    exponent: u32,
+    n: i64,
 ) -> T {
-    let floor = power(10, exponent);
+    let floor = T::ratio(1, n);
     let raised: Vec<T> = all(problem, now).iter().map(|value| at_least(value, &floor)).collect();
     let sum = raised.iter().cloned().fold(T::zero(), |sum, value| sum + value);
     raised[j].clone() / sum
@@ -142,7 +146,7 @@ fn at_least<T: Real>(value: &T, floor: &T) -> T {
     }
 }
 
-/// base⁻ᵉ
-fn power<T: Real>(base: i64, exponent: u32) -> T {
-    T::rational(&Rational::new(1, base).pow(exponent))
+/// ln base⁻ᵉ = −e ln base
+fn log_power<T: Real>(base: i64, exponent: i64) -> T {
+    -(T::ln(&T::integer(base)) * T::integer(exponent))
 }

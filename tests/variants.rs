@@ -1,0 +1,478 @@
+//! Goal: the catalogue of variants says what the code does, and every variant does what its row says.
+//!
+//! Method: both halves are read, `spec/variants.toml` as data and `src/oracle/variant/` as text, and held against each other. Then every
+//! variant is run in doubles beside the filter itself on small problems with generic numbers, on which no two terms are alike by chance,
+//! and the first value that differs must be of the quantity that its row names. Kind of evidence: oracle.
+
+use immaculate::gaussian::Gaussian;
+use immaculate::imm::{Equations, Initial, Problem, Quantity};
+use immaculate::model::motion::Mode;
+use immaculate::model::{Measurement, PolarComponent};
+use immaculate::oracle::setup::Setup;
+use immaculate::oracle::trace::Trace;
+use immaculate::oracle::variant::{Kind, Variant, apply, catalogue, find, read};
+use immaculate::rule::{Rule, RuleName, unscented::unscented_in};
+use nalgebra::{SMatrix, SVector};
+use std::collections::BTreeSet;
+
+/// What counts as another value, in parts of the quantity's size: far above the rounding of these problems (the greatest is 10⁻¹¹, of a
+/// form that subtracts squares of positions), far below the effect of a mistake.
+const CHANGE: f64 = 1e-6;
+
+/// What counts as the same value; above the rounding of these problems.
+const ROUNDING: f64 = 1e-9;
+
+#[test]
+fn the_two_halves_of_the_catalogue_agree() {
+    let rows = read(include_str!("../spec/variants.toml")).expect("the catalogue can be read");
+    assert_eq!(rows, catalogue());
+    let ids: BTreeSet<String> = rows.iter().map(|variant| variant.id.clone()).collect();
+    assert_eq!(ids.len(), rows.len(), "an id stands for one variant");
+    let arms = names_in_the_code();
+    let without_arm: Vec<_> = ids.difference(&arms).collect();
+    let without_row: Vec<_> = arms.difference(&ids).collect();
+    assert!(without_arm.is_empty(), "a row and no arm: {without_arm:?}");
+    assert!(without_row.is_empty(), "an arm and no row: {without_row:?}");
+    for variant in &rows {
+        assert!(apply(&variant.id, &mut linear(3)), "{} is known", variant.id);
+        assert!(apply(&variant.id, &mut polar(RULE)), "{} is known", variant.id);
+        assert_eq!(find(&variant.id), Some(variant));
+    }
+    assert!(!apply("no-such-variant", &mut linear(3)));
+    assert_eq!(find("no-such-variant"), None);
+}
+
+#[test]
+fn every_row_is_a_sentence_with_a_source() {
+    for variant in catalogue() {
+        let id = &variant.id;
+        let is_word =
+            |word: &str| !word.is_empty() && word.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit());
+        assert!(
+            id.split('-').count() > 1 && id.split('-').all(is_word),
+            "{id}: words with hyphens"
+        );
+        assert!(
+            variant.about.starts_with("you "),
+            "{id}: it is said to the one who did it"
+        );
+        for text in [&variant.about, &variant.effect, &variant.source] {
+            assert!(!text.is_empty() && !text.ends_with('.'), "{id}: {text:?}");
+        }
+        let is_convention = variant.kind == Kind::Convention;
+        assert_eq!(variant.convention.is_some(), is_convention, "{id}");
+        assert_eq!(variant.value.is_some(), is_convention, "{id}");
+    }
+    let mistakes = catalogue().iter().filter(|variant| variant.kind == Kind::Mistake);
+    assert!(mistakes.count() >= 45);
+}
+
+#[test]
+fn every_convention_is_one_that_a_program_can_declare() {
+    let formats = include_str!("../spec/formats.md");
+    let table = &formats[formats.find("## Conventions").expect("the table of conventions")..];
+    let mut declared = BTreeSet::new();
+    for variant in catalogue().iter().filter(|variant| variant.kind == Kind::Convention) {
+        let (Some(key), Some(value)) = (&variant.convention, &variant.value) else {
+            panic!("{}", variant.id)
+        };
+        let row = table.lines().find(|line| line.starts_with(&format!("| `{key}` |")));
+        let others = row.expect("a row of the key").split('|').nth(3).expect("the others");
+        assert!(others.contains(&format!("`{value}`")), "{}: {others}", variant.id);
+        assert!(declared.insert((key, value)), "{} is there twice", variant.id);
+    }
+    let known: usize = table
+        .lines()
+        .filter(|line| line.starts_with("| `"))
+        .map(others_known)
+        .sum();
+    assert_eq!(declared.len(), known, "every other convention has a variant");
+}
+
+#[test]
+fn a_mistake_or_convention_first_changes_the_quantity_in_whose_equation_it_is_made() {
+    for variant in catalogue().iter().filter(|variant| variant.kind != Kind::Form) {
+        let mut is_seen = false;
+        for scene in scenes() {
+            let (expected, found) = (scene.run(&[]), scene.run(&[&variant.id]));
+            let first = first_change(&expected, &found, ROUNDING);
+            is_seen |= first == first_change(&expected, &found, CHANGE) && first == Some(variant.quantity);
+            let is_earlier = first.is_some_and(|first| first < variant.quantity);
+            if is_earlier {
+                println!("EARLIER {} {first:?} {}", variant.id, scene.name());
+            }
+            assert!(
+                !is_earlier,
+                "{} changes {first:?} first on {}",
+                variant.id,
+                scene.name()
+            );
+        }
+        if !is_seen {
+            println!("UNSEEN {}", variant.id);
+        }
+        assert!(is_seen, "{} first changes {:?} nowhere", variant.id, variant.quantity);
+    }
+}
+
+#[test]
+fn a_form_changes_nothing_but_rounding() {
+    for variant in catalogue().iter().filter(|variant| variant.kind == Kind::Form) {
+        let mut is_another = false;
+        for scene in scenes() {
+            let (expected, found) = (scene.run(&[]), scene.run(&[&variant.id]));
+            let underflows = variant.id == "likelihoods-not-scaled" && scene.name() == "outlier";
+            assert_eq!(
+                expected.count() != found.count(),
+                underflows,
+                "{} on {}",
+                variant.id,
+                scene.name()
+            );
+            let first = first_change(&expected, &found, ROUNDING);
+            assert_eq!(first, None, "{} on {}", variant.id, scene.name());
+            is_another |= expected != found;
+        }
+        assert!(is_another, "{} is the same arithmetic", variant.id);
+    }
+}
+
+#[test]
+fn a_variant_changes_nothing_where_it_does_not_apply() {
+    let mut left_alone = BTreeSet::new();
+    for variant in catalogue() {
+        for scene in scenes().iter().filter(|scene| !scene.applies(variant)) {
+            let (expected, found) = (scene.run(&[]), scene.run(&[&variant.id]));
+            let first = first_change(&expected, &found, ROUNDING);
+            assert_eq!(first, None, "{} on {}", variant.id, scene.name());
+            left_alone.insert(format!("{:?}", variant.applies));
+        }
+    }
+    assert_eq!(left_alone.len(), 5, "each limit was met: {left_alone:?}");
+}
+
+#[test]
+fn no_two_variants_are_the_same() {
+    let scenes = scenes();
+    let variants = catalogue().iter().filter(|variant| variant.kind != Kind::Form);
+    let runs: Vec<(&str, Vec<Trace>)> = variants
+        .map(|variant| {
+            (
+                variant.id.as_str(),
+                scenes.iter().map(|scene| scene.run(&[&variant.id])).collect(),
+            )
+        })
+        .collect();
+    let mut same = Vec::new();
+    for (place, (id, runs_of_one)) in runs.iter().enumerate() {
+        for (other_id, runs_of_other) in &runs[..place] {
+            let mut pairs = runs_of_one.iter().zip(runs_of_other);
+            if pairs.all(|(a, b)| a.count() == b.count() && first_change(a, b, ROUNDING).is_none()) {
+                same.push((*id, *other_id));
+            }
+        }
+    }
+    assert!(same.is_empty(), "{same:?}");
+}
+
+/// The values of a program with two mistakes, judged along its own values: the equations that do not explain them are those of the two.
+#[test]
+fn two_variants_compose() {
+    let pairs = [
+        ("transition-transposed", "measurement-noise-omitted"),
+        ("mixed-spread-omitted", "determinant-omitted"),
+        ("process-noise-doubled", "combined-spread-omitted"),
+        ("innovation-reversed", "update-subtracted"),
+        ("normaliser-22", "initial-probabilities-equal"),
+    ];
+    for (first, second) in pairs {
+        let both = varied(linear(3), &[first, second]);
+        let shown = both.run().values;
+        let unexplained = changes(&shown, &linear(3).run_along(&shown, |value| value).values);
+        let named = [first, second].map(|id| find(id).expect("it is in the catalogue").quantity);
+        for quantity in named {
+            assert!(unexplained.contains(&quantity), "{first} and {second}: {quantity:?}");
+        }
+        let other_way = varied(linear(3), &[second, first]).run().values;
+        assert_eq!(other_way, shown, "{first} and {second} in the other order");
+        // Each alone does not explain what both did.
+        for id in [first, second] {
+            let alone = varied(linear(3), &[id]).run_along(&shown, |value| value).values;
+            assert!(!changes(&shown, &alone).is_empty(), "{id}");
+        }
+        let explained = both.run_along(&shown, |value| value).values;
+        assert!(changes(&shown, &explained).is_empty(), "{first} and {second}");
+    }
+}
+
+/// An innovation of the other sign that is subtracted is right in the end.
+#[test]
+fn two_wrongs_can_make_a_right() {
+    let expected = linear(3).run().values;
+    let found = varied(linear(3), &["innovation-reversed", "update-subtracted"])
+        .run()
+        .values;
+    assert_eq!(changes(&expected, &found), BTreeSet::from([Quantity::Innovation]));
+}
+
+/// The symmetric root and the upper one are roots: the points have the predicted covariance, as with the lower one, so that a linear
+/// measurement of the points has the right covariances.
+#[test]
+fn every_square_root_gives_the_same_filter_on_a_linear_problem() {
+    let rule: Rule<f64, 4> = RULE.parse::<RuleName>().unwrap().rule().unwrap();
+    let mut setup = linear(3);
+    setup.problem.rule = Some(rule);
+    setup.equations = Equations::cubature();
+    let expected = setup.run().values;
+    for id in ["square-root-upper", "square-root-symmetric"] {
+        let found = varied(setup.clone(), &[id]).run().values;
+        assert_eq!(first_change(&expected, &found, ROUNDING), None, "{id}");
+        assert_eq!(expected.count(), found.count());
+    }
+}
+
+// Problems with generic numbers
+
+const RULE: &str = "cubature-5";
+
+/// A problem of one of the shapes that are needed.
+enum Scene {
+    Large(&'static str, Setup<f64, 4, 2>),
+    Square(&'static str, Setup<f64, 2, 2>),
+    Small(&'static str, Setup<f64, 1, 1>),
+}
+
+impl Scene {
+    fn name(&self) -> &'static str {
+        match self {
+            Self::Large(name, _) | Self::Square(name, _) | Self::Small(name, _) => name,
+        }
+    }
+
+    fn run(&self, ids: &[&str]) -> Trace {
+        match self {
+            Self::Large(_, setup) => varied(setup.clone(), ids).run().values,
+            Self::Square(_, setup) => varied(setup.clone(), ids).run().values,
+            Self::Small(_, setup) => varied(setup.clone(), ids).run().values,
+        }
+    }
+
+    fn applies(&self, variant: &Variant) -> bool {
+        match self {
+            Self::Large(_, setup) => variant.applies.to(setup),
+            Self::Square(_, setup) => variant.applies.to(setup),
+            Self::Small(_, setup) => variant.applies.to(setup),
+        }
+    }
+}
+
+fn varied<const N: usize, const M: usize>(mut setup: Setup<f64, N, M>, ids: &[&str]) -> Setup<f64, N, M> {
+    for id in ids {
+        assert!(apply(id, &mut setup), "{id}");
+    }
+    setup
+}
+
+fn scenes() -> Vec<Scene> {
+    let mut other_order = polar("cubature-3");
+    let scaled = unscented_in(0.5, 2.0, 0.0).unwrap();
+    if let Measurement::Polar { components, .. } = &mut other_order.problem.measurement {
+        components.reverse();
+    }
+    other_order.problem.rule = Some(scaled);
+    for z in other_order.measurements.iter_mut().flatten() {
+        *z = SVector::from([z[1], z[0]]);
+    }
+    let noise = &mut other_order.problem.measurement_noise;
+    *noise = SMatrix::from([[noise[(1, 1)], noise[(0, 1)]], [noise[(0, 1)], noise[(0, 0)]]]);
+
+    let mut outlier = linear(2);
+    outlier.measurements[1] = Some(SVector::from([900.0, -700.0]));
+    let mut points = linear(2);
+    points.problem.rule = Some("simplex-5".parse::<RuleName>().unwrap().rule().unwrap());
+    points.equations = Equations::cubature();
+    vec![
+        Scene::Large("linear", linear(3)),
+        Scene::Large("one mode", linear(1)),
+        Scene::Large("outlier", outlier),
+        Scene::Large("linear with points", points),
+        Scene::Large("fifth degree", polar(RULE)),
+        Scene::Large("simplex", polar("simplex-5")),
+        Scene::Large("scaled unscented", other_order),
+        Scene::Square(
+            "square",
+            generic(2, Measurement::Linear(matrix(70, 0.3) + SMatrix::identity())),
+        ),
+        Scene::Small("scalar", generic(2, Measurement::Linear(SMatrix::from([[0.8]])))),
+    ]
+}
+
+/// Kalman filters.
+fn linear(modes: usize) -> Setup<f64, 4, 2> {
+    let mut h: SMatrix<f64, 2, 4> = matrix(80, 0.2);
+    h[(0, 0)] += 1.0;
+    h[(1, 2)] += 1.0;
+    let mut setup = generic(modes, Measurement::Linear(h));
+    setup.measurements[2] = None;
+    setup
+}
+
+/// Range and bearing from a sensor to the east of the target, so that the bearing is cut where the target is.
+fn polar(rule: &str) -> Setup<f64, 4, 2> {
+    let measurement = Measurement::Polar {
+        components: [PolarComponent::Range, PolarComponent::Bearing],
+        position: [0, 2],
+        sensor: [3.0, -2.0],
+    };
+    let mut setup = generic(3, measurement);
+    setup.problem.rule = Some(rule.parse::<RuleName>().unwrap().rule().unwrap());
+    setup.equations = Equations::cubature();
+    setup.problem.measurement_noise = SMatrix::from([[4.0, 0.02], [0.02, 0.01]]);
+    for (j, estimate) in setup.initial.modes.iter_mut().enumerate() {
+        estimate.mean = SVector::from([-50.0 + index(j), 0.7, -1.5 - 0.3 * index(j), 0.4]);
+        estimate.covariance *= 4.0;
+    }
+    let bearings = [3.1, -3.12, 3.05, -3.0, 3.14];
+    for (k, z) in setup.measurements.iter_mut().enumerate() {
+        *z = Some(SVector::from([52.0 + 1.3 * value(200 + k), bearings[k]]));
+    }
+    setup.measurements[3] = None;
+    setup
+}
+
+/// Modes, noises, estimates and measurements with full matrices.
+fn generic<const N: usize, const M: usize>(modes: usize, measurement: Measurement<f64, N, M>) -> Setup<f64, N, M> {
+    let mode = |j: usize| Mode {
+        name: format!("mode {j}"),
+        transition: SMatrix::identity() + matrix::<N, N>(100 * j, 0.2),
+        noise: covariance(100 * j + 20, 1.0 + 2.0 * index(j)),
+    };
+    let estimate = |j: usize| Gaussian {
+        mean: SVector::from_fn(|row, _| 8.0 + 3.0 * value(100 * j + 40 + row)),
+        covariance: covariance(100 * j + 60, 6.0),
+    };
+    let shares = |seed: usize| {
+        let weights: Vec<f64> = (0..modes).map(|j| 1.2 + value(seed + j)).collect();
+        let sum: f64 = weights.iter().sum();
+        weights.iter().map(|weight| weight / sum).collect::<Vec<_>>()
+    };
+    let transition = (0..modes).map(|i| {
+        let stay = |j: usize| if i == j { 0.6 + 0.1 * index(i) } else { 0.0 };
+        let leave = 0.4 - 0.1 * index(i);
+        let row = shares(300 + 10 * i);
+        row.iter()
+            .enumerate()
+            .map(|(j, share)| stay(j) + leave * share)
+            .collect()
+    });
+    let problem = Problem {
+        modes: (0..modes).map(mode).collect(),
+        transition: transition.collect(),
+        measurement,
+        measurement_noise: covariance(500, 3.0),
+        rule: None,
+    };
+    let initial = Initial {
+        modes: (0..modes).map(estimate).collect(),
+        mode_probabilities: shares(400),
+    };
+    assert_eq!(problem.check(&initial).err(), None);
+    let measured = |k: usize| Some(SVector::from_fn(|row, _| 8.0 + 5.0 * value(600 + 10 * k + row)));
+    Setup {
+        problem,
+        equations: Equations::kalman(),
+        initial,
+        measurements: (0..5).map(measured).collect(),
+    }
+}
+
+/// A number between −1 and 1 that is like no other: the multiples of the golden ratio are spread evenly.
+fn value(seed: usize) -> f64 {
+    2.0 * (0.618_033_988_749_895 * (index(seed) + 1.0)).fract() - 1.0
+}
+
+fn index(j: usize) -> f64 {
+    f64::from(u32::try_from(j).unwrap())
+}
+
+fn matrix<const R: usize, const C: usize>(seed: usize, size: f64) -> SMatrix<f64, R, C> {
+    SMatrix::from_fn(|row, column| size * value(seed + 4 * row + column))
+}
+
+fn covariance<const D: usize>(seed: usize, size: f64) -> SMatrix<f64, D, D> {
+    let root = SMatrix::<f64, D, D>::identity() + matrix::<D, D>(seed, 0.5);
+    root * root.transpose() * size
+}
+
+// How two runs are compared
+
+const PROBABILITIES: [Quantity; 3] = [
+    Quantity::PredictedModeProbabilities,
+    Quantity::MixingProbabilities,
+    Quantity::ModeProbabilities,
+];
+
+/// The first quantity of the first step in which two runs differ.
+fn first_change(expected: &Trace, found: &Trace, tolerance: f64) -> Option<Quantity> {
+    let mut places = expected
+        .all_places()
+        .filter(|&place| differs(expected, found, place, tolerance));
+    places.next().map(|(_, quantity, _)| quantity)
+}
+
+/// All quantities in which two runs differ.
+fn changes(expected: &Trace, found: &Trace) -> BTreeSet<Quantity> {
+    let places = expected
+        .all_places()
+        .filter(|&place| differs(expected, found, place, ROUNDING));
+    places.map(|(_, quantity, _)| quantity).collect()
+}
+
+/// Whether the values of a place differ by more than a part of their size, a probability of its own. What one of the runs does not have
+/// is not compared.
+fn differs(expected: &Trace, found: &Trace, place: (usize, Quantity, usize), tolerance: f64) -> bool {
+    let (step, quantity, mode) = place;
+    let (Some(expected), Some(found)) = (expected.get(step, quantity, mode), found.get(step, quantity, mode)) else {
+        return false;
+    };
+    let size = expected.iter().fold(0.0, |size: f64, value| size.max(value.abs()));
+    let size = |value: f64| {
+        if PROBABILITIES.contains(&quantity) {
+            value.abs()
+        } else {
+            size
+        }
+    };
+    let is_near = |(a, b): (&f64, &f64)| (a - b).abs() <= tolerance * size(*a);
+    !expected.iter().zip(found).all(is_near)
+}
+
+// How the halves are read
+
+/// The names with hyphens in quotes, in the code of the variants.
+fn names_in_the_code() -> BTreeSet<String> {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("src/oracle/variant");
+    let mut names = BTreeSet::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let text = std::fs::read_to_string(entry.unwrap().path()).unwrap();
+        let code = text.lines().filter(|line| !line.trim_start().starts_with("//"));
+        for line in code {
+            let quoted = line.split('"').skip(1).step_by(2);
+            let is_name = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
+            names.extend(
+                quoted
+                    .filter(|text| text.contains('-') && text.chars().all(is_name))
+                    .map(str::to_owned),
+            );
+        }
+    }
+    names
+}
+
+/// The number of values in the last column of a row of conventions.
+fn others_known(row: &str) -> usize {
+    let others = row.split('|').nth(3).unwrap_or_default();
+    // The values stand in backquotes, and what they mean after a colon or in brackets.
+    let names = others.split('`').skip(1).step_by(2);
+    names.count()
+}
