@@ -119,16 +119,11 @@ fn a_mistake_or_convention_first_changes_the_quantity_in_whose_equation_it_is_ma
 fn a_form_changes_nothing_but_rounding() {
     for variant in catalogue().iter().filter(|variant| variant.kind == Kind::Form) {
         let mut is_another = false;
-        for scene in scenes() {
+        // Of these likelihoods some are zero as doubles, if they are not divided by the greatest.
+        let underflows = |scene: &Scene| variant.id == "likelihoods-not-scaled" && OUTLIERS.contains(&scene.name());
+        for scene in scenes().iter().filter(|scene| !underflows(scene)) {
             let (expected, found) = (scene.run(&[]), scene.run(&[&variant.id]));
-            let underflows = variant.id == "likelihoods-not-scaled" && scene.name() == "outlier";
-            assert_eq!(
-                expected.count() != found.count(),
-                underflows,
-                "{} on {}",
-                variant.id,
-                scene.name()
-            );
+            assert_eq!(expected.count(), found.count(), "{} on {}", variant.id, scene.name());
             let first = first_change(&expected, &found, ROUNDING);
             assert_eq!(first, None, "{} on {}", variant.id, scene.name());
             is_another |= expected != found;
@@ -235,6 +230,9 @@ fn every_square_root_gives_the_same_filter_on_a_linear_problem() {
 
 const RULE: &str = "cubature-5";
 
+/// The scenes whose likelihoods are beyond doubles.
+const OUTLIERS: [&str; 2] = ["outlier", "faint"];
+
 /// A problem of one of the shapes that are needed.
 enum Scene {
     Large(&'static str, Setup<f64, 4, 2>),
@@ -288,13 +286,17 @@ fn scenes() -> Vec<Scene> {
 
     let mut outlier = linear(2);
     outlier.measurements[1] = Some(SVector::from([900.0, -700.0]));
+    // Log-likelihoods of about −1022 and −699: below and above the logarithm of the smallest normal double, −708.
+    let mut faint = linear(2);
+    faint.measurements[0] = Some(SVector::from([132.0, -91.2]));
     let mut points = linear(2);
     points.problem.rule = Some("simplex-5".parse::<RuleName>().unwrap().rule().unwrap());
     points.equations = Equations::cubature();
     vec![
         Scene::Large("linear", linear(3)),
         Scene::Large("one mode", linear(1)),
-        Scene::Large("outlier", outlier),
+        Scene::Large(OUTLIERS[0], outlier),
+        Scene::Large(OUTLIERS[1], faint),
         Scene::Large("linear with points", points),
         Scene::Large("fifth degree", polar(RULE)),
         Scene::Large("simplex", polar("simplex-5")),

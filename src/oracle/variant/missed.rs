@@ -25,10 +25,10 @@ fn of_measurement<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut
             }
         }
         "missed-detection-as-the-last-measurement" => {
-            let mut last = None;
-            for measurement in &mut setup.measurements {
-                *measurement = measurement.take().or(last);
-                last = measurement.clone();
+            for k in 1..setup.measurements.len() {
+                if setup.measurements[k].is_none() {
+                    setup.measurements[k] = setup.measurements[k - 1].clone();
+                }
             }
         }
         _ => return false,

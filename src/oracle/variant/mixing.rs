@@ -52,8 +52,10 @@ fn of_mixing_probability<T: Real, const N: usize, const M: usize>(id: &str, setu
         }
         // pᵢⱼ μᵢ
         "mixing-not-normalised" => {
-            *entry =
-                |problem, previous, _, j, i| problem.transition[i][j].clone() * previous.mode_probabilities[i].clone()
+            *entry = |problem, previous, _, j, i| {
+                let from = previous.mode_probabilities[i].clone();
+                problem.transition[i][j].clone() * from
+            }
         }
         // μⱼ∣ᵢ in the place of μᵢ∣ⱼ
         "mixing-indices-swapped" => *entry = |problem, previous, _, j, i| mixing(problem, previous, j, i),

@@ -33,7 +33,9 @@ fn of_noise<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup
         }
         "process-noise-of-the-first-mode" => {
             let first = modes[0].noise.clone();
-            modes.iter_mut().for_each(|mode| mode.noise.clone_from(&first));
+            for mode in modes {
+                mode.noise.clone_from(&first);
+            }
         }
         // F (P + Q) Fᵀ
         "process-noise-before-motion" => {

@@ -91,8 +91,10 @@ fn of_mean<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<
         }
         // x̂⁻ of all modes + W ν
         "update-of-the-combined-prediction" => {
-            *entry =
-                |_, _, now, j| update::updated_mean(&now.combined_prediction.mean, &now.gains[j], &now.innovations[j])
+            *entry = |_, _, now, j| {
+                let (mean, gain) = (&now.combined_prediction.mean, &now.gains[j]);
+                update::updated_mean(mean, gain, &now.innovations[j])
+            }
         }
         // x̂⁻ + W z
         "update-by-the-measurement" => {
