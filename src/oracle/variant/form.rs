@@ -14,7 +14,11 @@ use nalgebra::{SMatrix, SVector};
 
 /// Applies a form; whether it is one.
 pub(super) fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
-    of_update(id, setup) || of_inverse(id, setup) || of_moments(id, setup) || of_probability(id, setup)
+    of_update(id, setup)
+        || of_inverse(id, setup)
+        || of_moments(id, setup)
+        || of_prediction(id, setup)
+        || of_probability(id, setup)
 }
 
 /// The updated covariance.
@@ -148,6 +152,16 @@ fn of_moments<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Set
                 reverse_points(equations);
             }
         }
+        _ => return false,
+    }
+    true
+}
+
+/// The prediction.
+fn of_prediction<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+    let points = draws_points(setup);
+    let equations = &mut setup.equations;
+    match id {
         // F P Fᵀ + Q with the two triangles as they come
         "prediction-not-mirrored" => {
             if !points {

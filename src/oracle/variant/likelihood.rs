@@ -14,7 +14,7 @@ use nalgebra::SVector;
 
 /// Applies a variant of the log-likelihood; whether it is one.
 pub(super) fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
-    of_density(id, setup) || of_arguments(id, setup)
+    of_density(id, setup) || of_updated_arguments(id, setup) || of_other_arguments(id, setup)
 }
 
 /// The density.
@@ -52,8 +52,8 @@ fn of_density<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Set
     true
 }
 
-/// The residual and the covariance that the density is given.
-fn of_arguments<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+/// The residual and the covariance after the update, given to the density.
+fn of_updated_arguments<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
     let points = draws_points(setup);
     let entry = &mut setup.equations.log_likelihood;
     match id {
@@ -84,6 +84,15 @@ fn of_arguments<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut S
                 }
             }
         }
+        _ => return false,
+    }
+    true
+}
+
+/// Another covariance, or a part of it, given to the density.
+fn of_other_arguments<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+    let entry = &mut setup.equations.log_likelihood;
+    match id {
         // S = R
         "likelihood-of-measurement-noise" => {
             *entry = |problem, _, now, j| log_density(&now.innovations[j], &ldl(&problem.measurement_noise));

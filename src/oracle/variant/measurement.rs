@@ -11,7 +11,7 @@ use nalgebra::{SMatrix, SVector};
 
 /// Applies a variant of the measurement; whether it is one.
 pub(super) fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
-    of_predicted_measurement(id, setup) || of_covariances(id, setup)
+    of_predicted_measurement(id, setup) || of_innovation_covariance(id, setup) || of_cross_covariance(id, setup)
 }
 
 /// The predicted measurement and the innovation.
@@ -43,8 +43,8 @@ fn of_predicted_measurement<T: Real, const N: usize, const M: usize>(id: &str, s
     true
 }
 
-/// Innovation covariance and cross-covariance.
-fn of_covariances<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+/// The innovation covariance.
+fn of_innovation_covariance<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
     let points = draws_points(setup);
     let equations = &mut setup.equations;
     match id {
@@ -79,6 +79,16 @@ fn of_covariances<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut
                 };
             }
         }
+        _ => return false,
+    }
+    true
+}
+
+/// The cross-covariance.
+fn of_cross_covariance<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+    let points = draws_points(setup);
+    let equations = &mut setup.equations;
+    match id {
         // C = Σₛ wₛ (X*ₛ − x̂⁻)(Zₛ − ẑ)ᵀ
         "cross-covariance-of-propagated-points" => {
             if points {

@@ -55,23 +55,14 @@ fn of_gain<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<
         // S⁻¹ C, which has a shape only for n = m
         "gain-factors-exchanged" => {
             if N == M {
-                *entry = |_, _, now, j| {
-                    let c = SMatrix::<T, M, M>::from_fn(|row, column| now.cross_covariances[j][(row, column)].clone());
-                    let solution = solve(&ldl(&now.innovation_covariances[j]), &c);
-                    Ok(SMatrix::from_fn(|row, column| solution[(row, column)].clone()))
-                }
+                *entry = |_, _, now, j| Ok(left_quotient(&now.innovation_covariances[j], &now.cross_covariances[j]));
             }
         }
-        // W of step k−1
+        // W of step k−1; its own where there was none
         "gain-of-the-step-before" => {
-            *entry = |_, previous, now, j| {
-                let factors = ldl(&now.innovation_covariances[j]);
-                check_positive_definite(&factors)?;
-                Ok(if now.step == 1 {
-                    update::gain(&now.cross_covariances[j], &factors)
-                } else {
-                    previous.gains[j].clone()
-                })
+            *entry = |_, previous, now, j| match previous.measurement {
+                Some(_) => Ok(previous.gains[j].clone()),
+                None => gain(&now.cross_covariances[j], &now.innovation_covariances[j]),
             }
         }
         _ => return false,
@@ -169,4 +160,14 @@ fn gain<T: Real, const N: usize, const M: usize>(c: &SMatrix<T, N, M>, s: &SMatr
     let factors = ldl(s);
     check_positive_definite(&factors)?;
     Ok(update::gain(c, &factors))
+}
+
+/// S⁻¹ C of matrices that have as many rows, N = M.
+fn left_quotient<T: Real, const N: usize, const M: usize>(
+    s: &SMatrix<T, M, M>,
+    c: &SMatrix<T, N, M>,
+) -> SMatrix<T, N, M> {
+    let square = SMatrix::<T, M, M>::from_fn(|row, column| c[(row, column)].clone());
+    let solution = solve(&ldl(s), &square);
+    SMatrix::from_fn(|row, column| solution[(row, column)].clone())
 }
