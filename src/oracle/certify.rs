@@ -12,7 +12,7 @@ use super::setup::Setup;
 use super::shape::{self, Work};
 use super::trace::{Table, Trace, numbers_as_json};
 use crate::imm::Quantity;
-use crate::number::{Enclosure, RandomRounding};
+use crate::number::Enclosure;
 use serde_json::{Value, json};
 
 /// The bits of the first attempt. The longest runs of the published cases need some hundreds.
@@ -106,11 +106,8 @@ impl Work for Attempt<'_> {
         })?;
         let scale = scales(&trace);
         let unit_roundoff = f64::EPSILON / 2.0;
-        let noise = noise::spread(&trace, unit_roundoff, || {
-            problem
-                .setup::<RandomRounding, N, M>(RandomRounding::input)
-                .map_or_else(|_| unreachable_run(&trace), |setup| setup.run())
-        });
+        let in_doubles: Setup<f64, N, M> = problem.setup_in_doubles()?;
+        let noise = noise::spread(&trace, unit_roundoff, noise::RUNS, || in_doubles.perturbed().run());
         Ok(Certified {
             trace,
             scale,
@@ -118,14 +115,6 @@ impl Work for Attempt<'_> {
             bits,
             digits,
         })
-    }
-}
-
-/// A run without values, for a problem that has been set up before and cannot be now.
-fn unreachable_run(trace: &Trace) -> super::run::Computed<RandomRounding> {
-    super::run::Computed {
-        values: Table::empty(trace.dimensions),
-        failures: Vec::new(),
     }
 }
 

@@ -79,7 +79,10 @@ pub fn diagnose(evidence: &[Evidence], conventions: &[&str]) -> Result<Diagnosis
     // Where both exchange the same entry the last one counts, so the order may matter.
     let found: Result<Vec<bool>, Invalid> = pairs
         .par_iter()
-        .map(|[first, second]| Ok(explains(&[&first.id, &second.id])? || explains(&[&second.id, &first.id])?))
+        .map(|[first, second]| {
+            let is_either = first.quantity == second.quantity;
+            Ok(explains(&[&first.id, &second.id])? || (is_either && explains(&[&second.id, &first.id])?))
+        })
         .collect();
     let found = chosen(&pairs, &found?);
     if !found.is_empty() {

@@ -5,7 +5,6 @@
 //! equations are run a few times in [`RandomRounding`], and how far the values scatter is the unit.
 
 use super::run::Computed;
-use super::setup::Setup;
 use super::trace::{Table, Trace};
 use crate::number::RandomRounding;
 
@@ -15,10 +14,10 @@ pub const RUNS: u64 = 8;
 
 /// The greatest deviation of any of the runs from the centre, for each number; infinite where a run could not be computed.
 ///
-/// `run` makes one run with random rounding.
-pub fn spread(centre: &Trace, unit_roundoff: f64, run: impl Fn() -> Computed<RandomRounding>) -> Trace {
+/// `run` makes one run with random rounding; it is made `runs` times.
+pub fn spread(centre: &Trace, unit_roundoff: f64, runs: u64, run: impl Fn() -> Computed<RandomRounding>) -> Trace {
     let mut spread = centre.map(|_, values| vec![0.0_f64; values.len()]);
-    for seed in 0..RUNS {
+    for seed in 0..runs {
         let sample = RandomRounding::with(unit_roundoff, seed, || {
             run()
                 .values
@@ -46,12 +45,5 @@ fn widen(spread: &mut Trace, centre: &Trace, sample: &Table<Vec<f64>>) {
         });
         let wider = wider.collect();
         spread.set(step, quantity, mode, wider);
-    }
-}
-
-impl<const N: usize, const M: usize> Setup<RandomRounding, N, M> {
-    /// The noise of the problem itself: the spread of whole runs around the centre.
-    pub fn spread(&self, centre: &Trace, unit_roundoff: f64) -> Trace {
-        spread(centre, unit_roundoff, || self.run())
     }
 }

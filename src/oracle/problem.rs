@@ -4,14 +4,9 @@
 //! and how every defect of a file becomes one sentence with the place inside the file.
 
 use super::invalid::{Class, Invalid};
-use super::setup::Setup;
 use super::shape;
-use crate::gaussian::Gaussian;
-use crate::imm::{Equations, Initial, InvalidProblem, Problem};
-use crate::model::{Measurement, PolarComponent, motion::Mode};
-use crate::number::Real;
-use crate::rule::{Rule, RuleName, unscented};
-use nalgebra::{SMatrix, SVector};
+use crate::imm::InvalidProblem;
+use crate::rule::RuleName;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -361,101 +356,6 @@ impl ProblemFile {
             }
         }
     }
-
-    /// The problem in a number system; `number` puts a double there.
-    ///
-    /// The lists must have the right lengths, which [`ProblemFile::check`] sees to.
-    ///
-    /// # Errors
-    ///
-    /// [`Invalid`] for a measurement, rule or dimension that does not exist.
-    pub fn setup<T: Real, const N: usize, const M: usize>(
-        &self,
-        number: fn(f64) -> T,
-    ) -> Result<Setup<T, N, M>, Invalid> {
-        let list = |values: &[f64]| -> Vec<T> { values.iter().map(|&value| number(value)).collect() };
-        let modes = self.modes.iter().map(|mode| Mode {
-            name: mode.name.clone(),
-            transition: matrix(&mode.transition, number),
-            noise: matrix(&mode.noise, number),
-        });
-        let estimates = self.initial.modes.iter().map(|estimate| Gaussian {
-            mean: vector(&estimate.mean, number),
-            covariance: matrix(&estimate.covariance, number),
-        });
-        let rule = self.rule(number)?;
-        Ok(Setup {
-            equations: if rule.is_some() {
-                Equations::cubature()
-            } else {
-                Equations::kalman()
-            },
-            problem: Problem {
-                modes: modes.collect(),
-                transition: self.transition.iter().map(|row| list(row)).collect(),
-                measurement: self.measurement(number)?,
-                measurement_noise: matrix(&self.noise, number),
-                rule,
-            },
-            initial: Initial {
-                modes: estimates.collect(),
-                mode_probabilities: list(&self.initial.mode_probabilities),
-            },
-            measurements: self
-                .measurements
-                .iter()
-                .map(|entry| entry.z.as_ref().map(|z| vector(z, number)))
-                .collect(),
-        })
-    }
-
-    fn measurement<T: Real, const N: usize, const M: usize>(
-        &self,
-        number: fn(f64) -> T,
-    ) -> Result<Measurement<T, N, M>, Invalid> {
-        match &self.measurement {
-            MeasurementFile::Linear { matrix: rows } => Ok(Measurement::Linear(matrix(rows, number))),
-            MeasurementFile::RangeBearing {
-                components,
-                position,
-                sensor,
-            } => {
-                let mut named = [PolarComponent::Range; M];
-                for (place, (component, name)) in named.iter_mut().zip(components).enumerate() {
-                    *component = match name.as_str() {
-                        "range" => PolarComponent::Range,
-                        "bearing" => PolarComponent::Bearing,
-                        _ => {
-                            let field = format!("problem.measurement.components[{place}]");
-                            let reason = format!("is {name:?}; a component is \"range\" or \"bearing\"");
-                            return Err(Invalid::new(Class::Unknown, field, reason));
-                        }
-                    };
-                }
-                Ok(Measurement::Polar {
-                    components: named,
-                    position: *position,
-                    sensor: sensor.map(number),
-                })
-            }
-        }
-    }
-
-    fn rule<T: Real, const N: usize>(&self, number: fn(f64) -> T) -> Result<Option<Rule<T, N>>, Invalid> {
-        let (field, rule) = match &self.filter {
-            FilterFile::Kalman {} => return Ok(None),
-            FilterFile::Cubature { rule } => (
-                "problem.filter.rule",
-                rule.parse::<RuleName>().and_then(|name| name.rule()),
-            ),
-            FilterFile::Unscented { alpha, beta, kappa } => (
-                "problem.filter",
-                unscented::unscented_in(number(*alpha), number(*beta), number(*kappa)),
-            ),
-        };
-        rule.map(Some)
-            .map_err(|error| Invalid::new(Class::Unknown, field, error.to_string()))
-    }
 }
 
 /// Puts a problem into doubles and lets the cycle check it.
@@ -465,7 +365,7 @@ impl shape::Work for TypedCheck<'_> {
     type Output = Result<(), Invalid>;
 
     fn run<const N: usize, const M: usize>(self) -> Self::Output {
-        let setup = self.0.setup::<f64, N, M>(|value| value)?;
+        let setup = self.0.setup_in_doubles::<N, M>()?;
         setup.problem.check(&setup.initial).map_err(|error| of_problem(&error))
     }
 }
@@ -505,14 +405,4 @@ fn check_matrix(field: &str, rows: &Rows, height: usize, width: usize) -> Result
         check_length(&format!("{field}[{place}]"), row.len(), width)?;
     }
     Ok(())
-}
-
-/// A matrix of so many rows and columns from a list of rows.
-fn matrix<T: Real, const R: usize, const C: usize>(rows: &Rows, number: fn(f64) -> T) -> SMatrix<T, R, C> {
-    SMatrix::from_fn(|row, column| number(rows[row][column]))
-}
-
-/// A vector from a list.
-fn vector<T: Real, const R: usize>(values: &[f64], number: fn(f64) -> T) -> SVector<T, R> {
-    SVector::from_fn(|row, _| number(values[row]))
 }

@@ -125,7 +125,7 @@ impl Work for InDoubles<'_> {
     type Output = Result<(Trace, Option<String>), Invalid>;
 
     fn run<const N: usize, const M: usize>(self) -> Self::Output {
-        let setup: Setup<f64, N, M> = self.0.setup(|value| value)?;
+        let setup: Setup<f64, N, M> = self.0.setup_in_doubles()?;
         let Computed { values, failures } = setup.run();
         Ok((values, failures.first().map(ToString::to_string)))
     }

@@ -1,8 +1,19 @@
 //! A problem in one number system, ready to be run, and to be varied.
+//!
+//! After this file the reader knows how a problem file comes into any number system, each number of the file as it is, and how the problem
+//! in doubles becomes one in random rounding.
 
+use super::invalid::{Class, Invalid};
+use super::problem::{FilterFile, MeasurementFile, ProblemFile, Rows};
+use crate::gaussian::Gaussian;
 use crate::imm::{Equations, Imm, Initial, Problem};
-use crate::number::Real;
-use nalgebra::SVector;
+use crate::model::motion::Mode;
+use crate::model::{Measurement, PolarComponent};
+use crate::number::{RandomRounding, Real};
+use crate::rule::{Rule, RuleName, unscented};
+use nalgebra::{SMatrix, SVector};
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
 
 /// All that a run needs.
 #[derive(Debug, Clone)]
@@ -22,4 +33,216 @@ impl<T: Real, const N: usize, const M: usize> Setup<T, N, M> {
     pub fn filter(&self) -> Imm<T, N, M> {
         Imm::unchecked(self.problem.clone(), self.equations.clone(), &self.initial)
     }
+}
+
+impl<const N: usize, const M: usize> Setup<f64, N, M> {
+    /// The same problem in random rounding: every number perturbed, and the filter's own equations.
+    pub fn perturbed(&self) -> Setup<RandomRounding, N, M> {
+        let list = |values: &[f64]| values.iter().copied().map(RandomRounding::input).collect::<Vec<_>>();
+        let problem = &self.problem;
+        let rule = problem.rule.as_ref().map(|rule| Rule {
+            points: rule
+                .points
+                .iter()
+                .map(|point| point.map(RandomRounding::input))
+                .collect(),
+            weights: list(&rule.weights),
+            covariance_weights: list(&rule.covariance_weights),
+        });
+        let modes = problem.modes.iter().map(|mode| Mode {
+            name: mode.name.clone(),
+            transition: mode.transition.map(RandomRounding::input),
+            noise: mode.noise.map(RandomRounding::input),
+        });
+        let estimates = self.initial.modes.iter().map(|estimate| Gaussian {
+            mean: estimate.mean.map(RandomRounding::input),
+            covariance: estimate.covariance.map(RandomRounding::input),
+        });
+        let measurements = self.measurements.iter();
+        Setup {
+            equations: if rule.is_some() {
+                Equations::cubature()
+            } else {
+                Equations::kalman()
+            },
+            problem: Problem {
+                modes: modes.collect(),
+                transition: problem.transition.iter().map(|row| list(row)).collect(),
+                measurement: match &problem.measurement {
+                    Measurement::Linear(matrix) => Measurement::Linear(matrix.map(RandomRounding::input)),
+                    Measurement::Polar {
+                        components,
+                        position,
+                        sensor,
+                    } => Measurement::Polar {
+                        components: *components,
+                        position: *position,
+                        sensor: sensor.map(RandomRounding::input),
+                    },
+                },
+                measurement_noise: problem.measurement_noise.map(RandomRounding::input),
+                rule,
+            },
+            initial: Initial {
+                modes: estimates.collect(),
+                mode_probabilities: list(&self.initial.mode_probabilities),
+            },
+            measurements: measurements
+                .map(|z| z.as_ref().map(|z| z.map(RandomRounding::input)))
+                .collect(),
+        }
+    }
+}
+
+impl ProblemFile {
+    /// The problem in a number system; `number` puts a double there.
+    ///
+    /// The lists must have the right lengths, which [`ProblemFile::check`] sees to.
+    ///
+    /// # Errors
+    ///
+    /// [`Invalid`] for a measurement, rule or dimension that does not exist.
+    pub fn setup<T: Real, const N: usize, const M: usize>(
+        &self,
+        number: fn(f64) -> T,
+    ) -> Result<Setup<T, N, M>, Invalid> {
+        self.setup_with_rule(number, self.rule(number)?)
+    }
+
+    /// The problem in doubles. The doubles of a rule are computed once and kept: a search asks for them thousands of times.
+    ///
+    /// # Errors
+    ///
+    /// As [`ProblemFile::setup`].
+    pub fn setup_in_doubles<const N: usize, const M: usize>(&self) -> Result<Setup<f64, N, M>, Invalid> {
+        let name = format!("{:?} {N}", self.filter);
+        let mut rules = RULES.lock().unwrap_or_else(PoisonError::into_inner);
+        let rule = match rules.get(&name) {
+            Some(columns) => columns.as_ref().map(of_columns),
+            None => {
+                let rule = self.rule(|value| value)?;
+                rules.insert(name, rule.as_ref().map(as_columns));
+                rule
+            }
+        };
+        drop(rules);
+        self.setup_with_rule(|value| value, rule)
+    }
+
+    fn setup_with_rule<T: Real, const N: usize, const M: usize>(
+        &self,
+        number: fn(f64) -> T,
+        rule: Option<Rule<T, N>>,
+    ) -> Result<Setup<T, N, M>, Invalid> {
+        let list = |values: &[f64]| -> Vec<T> { values.iter().map(|&value| number(value)).collect() };
+        let modes = self.modes.iter().map(|mode| Mode {
+            name: mode.name.clone(),
+            transition: matrix(&mode.transition, number),
+            noise: matrix(&mode.noise, number),
+        });
+        let estimates = self.initial.modes.iter().map(|estimate| Gaussian {
+            mean: vector(&estimate.mean, number),
+            covariance: matrix(&estimate.covariance, number),
+        });
+        Ok(Setup {
+            equations: if rule.is_some() {
+                Equations::cubature()
+            } else {
+                Equations::kalman()
+            },
+            problem: Problem {
+                modes: modes.collect(),
+                transition: self.transition.iter().map(|row| list(row)).collect(),
+                measurement: self.measurement(number)?,
+                measurement_noise: matrix(&self.noise, number),
+                rule,
+            },
+            initial: Initial {
+                modes: estimates.collect(),
+                mode_probabilities: list(&self.initial.mode_probabilities),
+            },
+            measurements: self
+                .measurements
+                .iter()
+                .map(|entry| entry.z.as_ref().map(|z| vector(z, number)))
+                .collect(),
+        })
+    }
+
+    fn measurement<T: Real, const N: usize, const M: usize>(
+        &self,
+        number: fn(f64) -> T,
+    ) -> Result<Measurement<T, N, M>, Invalid> {
+        match &self.measurement {
+            MeasurementFile::Linear { matrix: rows } => Ok(Measurement::Linear(matrix(rows, number))),
+            MeasurementFile::RangeBearing {
+                components,
+                position,
+                sensor,
+            } => {
+                let mut named = [PolarComponent::Range; M];
+                for (place, (component, name)) in named.iter_mut().zip(components).enumerate() {
+                    *component = match name.as_str() {
+                        "range" => PolarComponent::Range,
+                        "bearing" => PolarComponent::Bearing,
+                        _ => {
+                            let field = format!("problem.measurement.components[{place}]");
+                            let reason = format!("is {name:?}; a component is \"range\" or \"bearing\"");
+                            return Err(Invalid::new(Class::Unknown, field, reason));
+                        }
+                    };
+                }
+                Ok(Measurement::Polar {
+                    components: named,
+                    position: *position,
+                    sensor: sensor.map(number),
+                })
+            }
+        }
+    }
+
+    fn rule<T: Real, const N: usize>(&self, number: fn(f64) -> T) -> Result<Option<Rule<T, N>>, Invalid> {
+        let (field, rule) = match &self.filter {
+            FilterFile::Kalman {} => return Ok(None),
+            FilterFile::Cubature { rule } => (
+                "problem.filter.rule",
+                rule.parse::<RuleName>().and_then(|name| name.rule()),
+            ),
+            FilterFile::Unscented { alpha, beta, kappa } => (
+                "problem.filter",
+                unscented::unscented_in(number(*alpha), number(*beta), number(*kappa)),
+            ),
+        };
+        rule.map(Some)
+            .map_err(|error| Invalid::new(Class::Unknown, field, error.to_string()))
+    }
+}
+
+/// A rule in doubles, as lists whose lengths are known at run time: points, weights, covariance weights.
+type Columns = (Vec<Vec<f64>>, Vec<f64>, Vec<f64>);
+
+/// The rules in doubles that were asked for, by filter and dimension.
+static RULES: Mutex<BTreeMap<String, Option<Columns>>> = Mutex::new(BTreeMap::new());
+
+fn as_columns<const N: usize>(rule: &Rule<f64, N>) -> Columns {
+    let points = rule.points.iter().map(|point| point.as_slice().to_vec()).collect();
+    (points, rule.weights.clone(), rule.covariance_weights.clone())
+}
+
+fn of_columns<const N: usize>((points, weights, covariance_weights): &Columns) -> Rule<f64, N> {
+    Rule {
+        points: points.iter().map(|point| vector(point, |value| value)).collect(),
+        weights: weights.clone(),
+        covariance_weights: covariance_weights.clone(),
+    }
+}
+
+/// A matrix of so many rows and columns from a list of rows.
+fn matrix<T: Real, const R: usize, const C: usize>(rows: &Rows, number: fn(f64) -> T) -> SMatrix<T, R, C> {
+    SMatrix::from_fn(|row, column| number(rows[row][column]))
+}
+
+/// A vector from a list.
+fn vector<T: Real, const R: usize>(values: &[f64], number: fn(f64) -> T) -> SVector<T, R> {
+    SVector::from_fn(|row, _| number(values[row]))
 }

@@ -329,7 +329,7 @@ impl Work for RunPlanted<'_> {
     type Output = Result<Answer, Invalid>;
 
     fn run<const N: usize, const M: usize>(self) -> Self::Output {
-        let mut setup: Setup<f64, N, M> = self.problem.setup(|value| value)?;
+        let mut setup: Setup<f64, N, M> = self.problem.setup_in_doubles()?;
         for id in &self.planted.variants {
             variant::apply(id, &mut setup);
         }
