@@ -9,27 +9,43 @@
 //!
 //! What IEEE arithmetic gives exactly is not perturbed: x + 0, x · 0, x · 1, x / 1, 0 / x, negation and integers.
 //!
-//! Source: D. Stott Parker, Monte Carlo Arithmetic, 1997; J. Vignes, A stochastic arithmetic for reliable scientific computation, 1993.
+//! Source: D. Stott Parker, Monte Carlo Arithmetic, 1997; J. Vignes, A stochastic arithmetic for reliable scientific computation, 1993. The
+//! random numbers are those of SplitMix64 (Steele, Lea and Flood, Fast splittable pseudorandom number generators, 2014): a few lines,
+//! the same everywhere, and cheap enough to be drawn for every operation.
 
 use super::operators::{division_operators, ring_operators};
 use super::{Field, Rational, Real, Roots, Surd};
 use num_traits::{One, Zero};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
-use std::cell::RefCell;
+use std::cell::Cell;
 use std::cmp::Ordering;
 use std::fmt;
 
 thread_local! {
     /// The noise of the innermost scope.
-    static NOISE: RefCell<Option<Noise>> = const { RefCell::new(None) };
+    static NOISE: Cell<Noise> = const { Cell::new(Noise { step: 0.0, state: 0 }) };
 }
 
 /// How large the perturbations are, and where they come from.
+#[derive(Clone, Copy)]
 struct Noise {
-    /// 4u / 2³²: what a step of a random integer of 32 bits is worth.
+    /// 4u / 2³²: what a step of a random integer of 32 bits is worth; zero outside of all scopes.
     step: f64,
-    generator: ChaCha8Rng,
+    /// The state of the generator.
+    state: u64,
+}
+
+impl Noise {
+    /// The next random integer of 32 bits, with a sign: the upper half of the next number of SplitMix64.
+    fn next(&mut self) -> i32 {
+        self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.state;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^= z >> 31;
+        #[allow(clippy::cast_possible_truncation, reason = "the upper half of 64 bits")]
+        let upper = (z >> 32) as u32;
+        upper.cast_signed()
+    }
 }
 
 /// A double that is perturbed at random by every operation.
@@ -57,17 +73,17 @@ impl RandomRounding {
     ///
     /// Evidence: `the_same_seed_gives_the_same_random_rounding`, `nothing_is_perturbed_outside_of_a_scope`.
     pub fn with<R>(unit_roundoff: f64, seed: u64, work: impl FnOnce() -> R) -> R {
-        struct Restore(Option<Noise>);
+        struct Restore(Noise);
         impl Drop for Restore {
             fn drop(&mut self) {
-                NOISE.set(self.0.take());
+                NOISE.set(self.0);
             }
         }
         let noise = Noise {
             step: unit_roundoff * (4.0 / 4_294_967_296.0),
-            generator: ChaCha8Rng::seed_from_u64(seed),
+            state: seed,
         };
-        let _restore = Restore(NOISE.replace(Some(noise)));
+        let _restore = Restore(NOISE.replace(noise));
         work()
     }
 
@@ -146,13 +162,14 @@ fn is_unit(value: f64) -> bool {
 
 /// The double times 1 + ξ; what is not finite stays what it is.
 fn perturbed(value: f64) -> RandomRounding {
-    RandomRounding(NOISE.with_borrow_mut(|noise| match noise {
-        // A random integer of 32 bits with a sign, in units of 2u/2³¹.
-        Some(noise) if value.is_finite() => {
-            value + value * (f64::from(noise.generator.next_u32().cast_signed()) * noise.step)
-        }
-        _ => value,
-    }))
+    let mut noise = NOISE.get();
+    if noise.step == 0.0 || !value.is_finite() {
+        return RandomRounding(value);
+    }
+    // A random integer of 32 bits with a sign, in units of 2u/2³¹.
+    let relative = f64::from(noise.next()) * noise.step;
+    NOISE.set(noise);
+    RandomRounding(value + value * relative)
 }
 
 ring_operators!(RandomRounding);

@@ -7,11 +7,12 @@ use super::case::{self, BadCase, Case, Expected};
 use super::diagnose::{Diagnosis, Evidence, diagnose};
 use super::invalid::Invalid;
 use super::judge::{self, Finding, Judged, Judgement, LIMIT, Reference};
-use super::subject::{Answer, Broken, ECHO, Ready, Subject};
+use super::subject::{Answer, Broken, ECHO, Precision, Ready, Subject};
 use super::trace::{Dimensions, Trace};
 use super::variant::{Kind, Variant, catalogue};
 use crate::imm::Quantity;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::{Mutex, PoisonError};
 
 /// Which cases are asked for; empty lists ask for all.
 #[derive(Debug, Clone, Default)]
@@ -161,10 +162,15 @@ pub struct Report {
 }
 
 impl Report {
-    /// Whether anything is wrong. What a form or a convention explains is not.
+    /// Whether all faults are those of a form or a convention, which are not wrong.
+    pub fn is_excused(&self) -> bool {
+        matches!(&self.diagnosis, Diagnosis::One(variants)
+            if variants.iter().all(|variant| variant.kind != Kind::Mistake))
+    }
+
+    /// Whether anything is wrong.
     pub fn is_wrong(&self) -> bool {
-        let is_excused = matches!(&self.diagnosis, Diagnosis::One(variants)
-            if variants.iter().all(|variant| variant.kind != Kind::Mistake));
+        let is_excused = self.is_excused();
         self.echo == Some(false)
             || self.cases.iter().any(|case| match case.outcome {
                 Outcome::Wrong => !is_excused,
@@ -325,7 +331,7 @@ fn judge_answer(case: &Case, answer: Answer, ready: &Ready, conventions: &[&str]
             return Ok((report, None));
         }
     };
-    let reference = Reference::new(&case.problem, Some(expected), conventions, ready.precision)?;
+    let reference = reference_of(case, expected, conventions, ready.precision)?;
     let judgement = judge::Case {
         problem: &case.problem,
         shown: &shown,
@@ -336,6 +342,29 @@ fn judge_answer(case: &Case, answer: Answer, ready: &Ready, conventions: &[&str]
     summarise(&mut report, &judgement, error);
     report.judgement = Some(judgement);
     Ok((report, Some((shown, reference))))
+}
+
+/// The references of cases that were asked for before, by id and unit roundoff.
+static REFERENCES: Mutex<BTreeMap<(String, u64), Reference>> = Mutex::new(BTreeMap::new());
+
+/// What a case is judged by. Without declared conventions it is always the same, and kept.
+fn reference_of(
+    case: &Case,
+    expected: &Trace,
+    conventions: &[&str],
+    precision: Precision,
+) -> Result<Reference, Invalid> {
+    if !conventions.is_empty() {
+        return Reference::new(&case.problem, None, conventions, precision);
+    }
+    let key = (case.problem.id.clone(), precision.unit_roundoff().to_bits());
+    let kept = || REFERENCES.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(reference) = kept().get(&key) {
+        return Ok(reference.clone());
+    }
+    let reference = Reference::new(&case.problem, Some(expected), &[], precision)?;
+    kept().insert(key, reference.clone());
+    Ok(reference)
 }
 
 /// Outcome, counts and digits from the judged values.
@@ -376,7 +405,8 @@ fn evidence_of<'a>(
 ) -> Evidence<'a> {
     let values = report.judgement.iter().flat_map(|judgement| &judgement.values);
     let says_nothing = |value: &&Judged| match value.finding {
-        Finding::Stale | Finding::NotFinite | Finding::CannotTell => true,
+        Finding::Stale | Finding::CannotTell => true,
+        Finding::NotFinite => false,
         Finding::Right => value.own.is_none_or(|own| own.ratio > LIMIT),
         _ => value.own.is_none(),
     };

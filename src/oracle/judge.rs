@@ -229,8 +229,8 @@ fn compare(
         } else {
             error / noise[index].max(least)
         };
-        // A noise that is infinite or a value that is not a number says nothing.
-        let ratio = if ratio.is_nan() { 0.0 } else { ratio };
+        // A value that should not be a number is not near any number.
+        let ratio = if ratio.is_nan() { f64::INFINITY } else { ratio };
         if ratio > worst.ratio {
             worst = OwnError {
                 index,
@@ -359,6 +359,13 @@ impl Case<'_> {
         let own = expect(self.problem, variants, Some(self.shown), self.precision, runs)?;
         let is_shown = |place: &Place| self.shown.get(place.0, place.1, place.2).is_some();
         let is_within = |place: Place| {
+            let (step, quantity, mode) = place;
+            let is_finite =
+                |values: Option<&Vec<f64>>| values.is_some_and(|values| values.iter().all(|value| value.is_finite()));
+            if !is_finite(self.shown.get(step, quantity, mode)) {
+                // What is not finite is explained by equations that have no answer either.
+                return !is_finite(own.values.get(step, quantity, mode));
+            }
             let error = self.error(place, &own.values, &own.noise);
             error.is_some_and(|error| error.ratio <= limit)
         };

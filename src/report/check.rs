@@ -127,11 +127,11 @@ fn entry(judged: &Judged, index: usize, report: &CaseReport) -> String {
 fn first_fault(case: &CaseReport, judged: &Judged, report: &Report) -> String {
     let (step, quantity, mode) = judged.place;
     let of_mode = if quantity.is_of_mode() {
-        format!(", mode {mode}")
+        format!("modes[{mode}].")
     } else {
         String::new()
     };
-    let place = format!("{}, step {step}{of_mode}", case.id);
+    let place = format!("{}, step {step}, {of_mode}{}", case.id, quantity.name());
     let Some(own) = judged.own else {
         return format!("{place}: the value is not finite.");
     };
@@ -147,8 +147,7 @@ fn first_fault(case: &CaseReport, judged: &Judged, report: &Report) -> String {
         "infinitely many times".into()
     };
     format!(
-        "{place}: {}{} is {}, and from the program's own values before it it should be {}: off by {:.2e} of its unit, {noise} the rounding noise of {}.",
-        quantity.name(),
+        "{place}{} is {}, and from the program's own values before it should be {}: off by {:.2e} of its unit, {noise} the rounding noise of {}.",
         entry(judged, own.index, case),
         own.shown,
         own.expected,
@@ -275,7 +274,7 @@ fn summary(report: &Report) -> String {
     let cannot_tell = count(|outcome| matches!(outcome, Outcome::CannotTell));
     let parts: Vec<String> = [
         (right, "right"),
-        (wrong, "wrong"),
+        (wrong, if report.is_excused() { "otherwise" } else { "wrong" }),
         (cannot_tell, "drowned in rounding noise"),
         (skipped, "skipped"),
     ]
@@ -291,11 +290,11 @@ fn summary(report: &Report) -> String {
         (_, true) => "WRONG",
         (Diagnosis::Nothing, false) if right == 0 => "NOTHING JUDGED",
         (Diagnosis::Nothing, false) => "RIGHT",
-        (_, false) => "RIGHT, but otherwise (see above)",
+        (_, false) => "RIGHT, but otherwise, see above",
     };
     let name = &report.ready.name;
     let sentence = format!(
-        "{verdict}  {name}, {}: of {} cases {}{digits}",
+        "{verdict}: {name}, {}: of {} cases {}{digits}",
         report.ready.precision,
         report.cases.len(),
         parts.join(", ")

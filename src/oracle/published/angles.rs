@@ -66,6 +66,12 @@ fn crossings() -> Vec<ProblemFile> {
             "The bearing grows beyond pi while the points of every prediction lie on both sides. Raw moments of the bearings, and an \
              innovation of nearly a whole turn, are wrong by dozens of standard deviations.",
         ),
+        west("cubature-3").named(
+            "wrap.cubature-3",
+            &flags,
+            "wrap.counter-clockwise with eight points and none in the centre: bearings are averaged about that of the predicted mean, which \
+             is no point's.",
+        ),
         mirrored(west("cubature-5"), [1.0, 1.0, -1.0, -1.0], [1.0, -1.0], |bearing| -bearing).named(
             "wrap.clockwise",
             &mirror,

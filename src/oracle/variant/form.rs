@@ -190,11 +190,6 @@ fn of_prediction<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut 
 fn of_probability<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
     let equations = &mut setup.equations;
     match id {
-        // Lⱼ itself, not relative to the greatest
-        "likelihoods-not-scaled" => {
-            equations.relative_likelihood = |_, _, now, j| T::exp(&now.log_likelihoods[j]);
-            equations.log_evidence = |_, _, now| T::ln(&now.evidence);
-        }
         // μⱼ = exp( ln Lⱼ + ln cⱼ − ln Σᵢ exp(ln Lᵢ + ln cᵢ) )
         "probabilities-by-log-sum-exp" => {
             equations.mode_probability = |_, _, now, j| {

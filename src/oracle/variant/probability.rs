@@ -62,6 +62,11 @@ fn of_likelihood<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut 
                 relative_likelihood(&reversed, &now.predicted_mode_probabilities, j)
             }
         }
+        // Lⱼ itself, which may be too small for a double
+        "likelihoods-exponentiated-before-comparing" => {
+            *entry = |_, _, now, j| now.log_likelihoods[j].exp();
+            equations.log_evidence = |_, _, now| now.evidence.ln();
+        }
         // max(Lⱼ, 2⁻¹⁰²²), the smallest normal double
         "likelihood-floor-smallest-double" => *entry = |_, _, now, j| floored(now, j, 2, 1022),
         "likelihood-floor-1e-300" => *entry = |_, _, now, j| floored(now, j, 10, 300),
