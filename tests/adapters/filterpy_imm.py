@@ -1,0 +1,187 @@
+#!/usr/bin/env python3
+"""FilterPy's IMM under test: its own classes, as their documentation uses them.
+
+    immaculate check -- python3 tests/adapters/filterpy_imm.py
+
+Nothing is computed here that FilterPy computes, and whatever its classes let a user see is shown. Where a function must be supplied
+(the mean and the difference of measurements with a bearing) it is the one of FilterPy's documentation.
+
+    problem             FilterPy
+    one mode            the mode's filter alone
+    several modes       kalman.IMMEstimator over the modes' filters
+    kalman              kalman.KalmanFilter
+    unscented           kalman.UnscentedKalmanFilter with JulierSigmaPoints where alpha = 1 and beta = 0, else MerweScaledSigmaPoints
+    cubature-3          kalman.CubatureKalmanFilter
+    no detection        update(None)
+"""
+
+import json
+import math
+import sys
+
+import filterpy
+import numpy as np
+from filterpy.kalman import (
+    CubatureKalmanFilter,
+    IMMEstimator,
+    JulierSigmaPoints,
+    KalmanFilter,
+    MerweScaledSigmaPoints,
+    UnscentedKalmanFilter,
+)
+
+# ---------------------------------------------------------------------------------------- the protocol
+
+
+def main():
+    """Answers one message a line until `stop`."""
+    for line in sys.stdin:
+        message = json.loads(line)
+        if message["type"] == "start":
+            reply = ready(message["echo"])
+        elif message["type"] == "run":
+            reply = run(message["problem"])
+        else:
+            break
+        print(json.dumps(reply), flush=True)
+
+
+def ready(echo):
+    """Says what is under test."""
+    return {
+        "type": "ready",
+        "name": f"FilterPy {filterpy.__version__}",  # CHANGE HERE
+        "conventions": {"angle_mean": "vector"},  # the mean of angles in FilterPy's documentation
+        "kinds": ["kalman", "unscented", "cubature-3"],
+        "validates": False,
+        "echo": np.dot(echo["matrix"], echo["vector"]).tolist(),
+    }
+
+
+def run(problem):
+    """Runs a problem as far as it goes."""
+    answer = {"type": "answer", "id": problem["id"], "steps": []}
+    try:
+        filters = [filter_of(problem, j) for j in range(len(problem["modes"]))]  # CHANGE HERE
+        imm = imm_of(problem, filters) if len(filters) > 1 else None
+        for entry in problem["measurements"]:
+            answer["steps"].append(step(entry, filters, imm))
+    except Exception as error:  # whatever the library raises is its answer
+        answer["error"] = f"step {len(answer['steps']) + 1}: {type(error).__name__}: {error}"
+    return answer
+
+
+# ----------------------------------------------------------------------------------------- the mapping
+
+
+def step(entry, filters, imm):
+    """One step of the library, and what it lets us see. CHANGE HERE."""
+    shown = {"step": entry["step"], "modes": [{} for _ in filters]}
+    z = None if entry["z"] is None else np.array(entry["z"]).reshape(column(filters[0], -1))
+    if imm is None:
+        filters[0].predict()
+        filters[0].update(z)
+        shown["combined"] = estimate(filters[0].x_post, filters[0].P_post)
+    else:
+        shown["predicted_mode_probabilities"] = imm.cbar.tolist()
+        for mode, weights in zip(shown["modes"], imm.omega.T):
+            mode["mixing_probabilities"] = weights.tolist()
+        imm.predict()
+        shown["combined_prediction"] = estimate(imm.x_prior, imm.P_prior)
+        imm.update(z)
+        shown["mode_probabilities"] = imm.mu.tolist()
+        shown["combined"] = estimate(imm.x_post, imm.P_post)
+    for mode, kf in zip(shown["modes"], filters):
+        mode["predicted"] = estimate(kf.x_prior, kf.P_prior)
+        mode["updated"] = estimate(kf.x_post, kf.P_post)
+        if z is not None:
+            mode["innovation"] = kf.y.tolist()
+            mode["innovation_covariance"] = kf.S.tolist()
+            mode["gain"] = kf.K.tolist()
+            mode["log_likelihood"] = float(kf.log_likelihood)
+    return shown
+
+
+def estimate(mean, covariance):
+    """Mean and covariance as an object of lists."""
+    return {"mean": mean.tolist(), "covariance": covariance.tolist()}
+
+
+def column(kf, length):
+    """The shape of a vector: the unscented filter has flat ones, the others columns."""
+    return (length,) if isinstance(kf, UnscentedKalmanFilter) else (length, 1)
+
+
+def imm_of(problem, filters):
+    """The IMM over the modes' filters. Its documentation has M[i, j] from j to i; its code has it from i to j, and that is used."""
+    return IMMEstimator(filters, problem["initial"]["mode_probabilities"], np.array(problem["transition"]))
+
+
+def filter_of(problem, j):
+    """The filter of a mode, by the problem's kind."""
+    mode, initial = problem["modes"][j], problem["initial"]["modes"][j]
+    n, m = len(problem["state"]), len(problem["R"])
+    kind = problem["filter"]["kind"]
+    if kind == "kalman":
+        kf = KalmanFilter(dim_x=n, dim_z=m)
+        kf.F = np.array(mode["F"])
+        kf.H = np.array(problem["measurement"]["H"])
+    else:
+        transition = np.array(mode["F"])
+        functions = functions_of(problem["measurement"])
+        functions.update(dim_x=n, dim_z=m, dt=1.0, fx=lambda x, dt: transition @ x)
+        if kind == "unscented":
+            kf = UnscentedKalmanFilter(points=points_of(problem["filter"], n), **functions)
+        else:
+            kf = CubatureKalmanFilter(**functions)
+    kf.Q = np.array(mode["Q"])
+    kf.R = np.array(problem["R"])
+    kf.x = np.array(initial["mean"], dtype=float).reshape(column(kf, n))
+    kf.P = np.array(initial["covariance"], dtype=float)
+    return kf
+
+
+def points_of(parameters, n):
+    """The points of the unscented filter."""
+    alpha, beta, kappa = parameters["alpha"], parameters["beta"], parameters["kappa"]
+    if alpha == 1 and beta == 0:
+        return JulierSigmaPoints(n, kappa=kappa)
+    return MerweScaledSigmaPoints(n, alpha=alpha, beta=beta, kappa=kappa)
+
+
+def functions_of(measurement):
+    """hx, and for bearings the mean and the difference, as FilterPy's documentation writes them."""
+    if measurement["kind"] == "linear":
+        matrix = np.array(measurement["H"])
+        return {"hx": lambda x: matrix @ x}
+    components, position, sensor = measurement["components"], measurement["position"], measurement["sensor"]
+
+    def hx(x):
+        dx, dy = x[position[0]] - sensor[0], x[position[1]] - sensor[1]
+        values = {"range": math.sqrt(dx**2 + dy**2), "bearing": math.atan2(dy, dx)}
+        return np.array([values[name] for name in components])
+
+    def z_mean(sigmas, weights):
+        mean = np.zeros(len(components))
+        for row, name in enumerate(components):
+            if name == "range":
+                mean[row] = np.dot(weights, sigmas[:, row])
+            else:
+                sum_sin = np.dot(weights, np.sin(sigmas[:, row]))
+                sum_cos = np.dot(weights, np.cos(sigmas[:, row]))
+                mean[row] = math.atan2(sum_sin, sum_cos)
+        return mean
+
+    def residual_z(a, b):
+        y = np.subtract(a, b)
+        for row, name in enumerate(components):
+            if name == "bearing":
+                y[row] = (y[row] + math.pi) % (2 * math.pi) - math.pi
+        return y
+
+    return {"hx": hx, "z_mean_fn": z_mean, "residual_z": residual_z}
+
+
+if __name__ == "__main__":
+    np.seterr(all="ignore")
+    main()

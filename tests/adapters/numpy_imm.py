@@ -1,0 +1,631 @@
+#!/usr/bin/env python3
+"""A complete IMM filter in numpy, and the adapter through which `immaculate check` speaks with it.
+
+    immaculate check -- python3 tests/adapters/numpy_imm.py
+
+The first half is the adapter: the protocol, and the mapping between the problem's JSON and the filter's arguments. To check a filter
+of your own, keep it and change the lines marked CHANGE HERE. The second half is the filter, which knows nothing of the protocol.
+
+Options, to see what the verdicts look like:
+
+    --show everything|posteriors|combined   how much of a step is shown
+    --form gain|joseph|inverse|information  the algebra of the update: other roundings, the same exact values
+    --single                                all arithmetic in single precision
+    --convention KEY=VALUE                  another convention, which is declared; see spec/formats.md
+    --mistake NAME                          a planted mistake, see numpy_mistakes.py; may be given more than once
+"""
+
+import argparse
+import json
+import math
+import sys
+from dataclasses import dataclass, field
+
+import numpy as np
+
+# --------------------------------------------------------------------- the adapter: the protocol
+
+
+def main():
+    """Answers one message a line until `stop`."""
+    options = parse_options()
+    for line in sys.stdin:
+        message = json.loads(line)
+        if message["type"] == "start":
+            reply = ready(message, options)
+        elif message["type"] == "run":
+            reply = run(message["problem"], options)
+        else:
+            break
+        print(json.dumps(reply), flush=True)
+
+
+def ready(message, options):
+    """Says what is under test."""
+    echo = message["echo"]
+    return {
+        "type": "ready",
+        "name": "numpy example" if not options.mistake else "numpy example with " + " and ".join(options.mistake),  # CHANGE HERE
+        "precision": "single" if options.single else "double",
+        "conventions": options.conventions,
+        "echo": (np.array(echo["matrix"]) @ np.array(echo["vector"])).tolist(),
+    }
+
+
+# ---------------------------------------------------------------------- the adapter: the mapping
+
+
+def run(problem, options):
+    """Runs a problem as far as it goes."""
+    answer = {"type": "answer", "id": problem["id"], "steps": []}
+    try:
+        check_problem(problem)
+        arguments = arguments_of(problem, options)
+    except Rejected as rejected:
+        return {"type": "rejected", "id": problem["id"], "class": rejected.reason_class, "reason": str(rejected)}
+    try:
+        imm = filter_class(options)(**arguments)  # CHANGE HERE: make your filter
+        for entry in problem["measurements"]:
+            z = None if entry["z"] is None else np.array(entry["z"], arguments["number"])
+            step = imm.step(z)  # CHANGE HERE: one step of your filter
+            answer["steps"].append(shown(entry["step"], step, options.show))
+    except (np.linalg.LinAlgError, FloatingPointError) as error:
+        answer["error"] = f"step {len(answer['steps']) + 1}: {error}"
+    return answer
+
+
+def arguments_of(problem, options):
+    """The problem as the arguments of the filter below. CHANGE HERE: as the arguments of yours."""
+    number = np.float32 if options.single else np.float64
+    n = len(problem["state"])
+    kind = problem["filter"]["kind"]
+    points = None if kind == "kalman" else rule(problem["filter"], n)
+    return {
+        "transition_matrices": [np.array(mode["F"], number) for mode in problem["modes"]],
+        "process_noises": [np.array(mode["Q"], number) for mode in problem["modes"]],
+        "measurement": Measurement.of(problem["measurement"], number, options.conventions.get("angle_mean", "centre-point")),
+        "measurement_noise": np.array(problem["R"], number),
+        "chain": np.array(problem["transition"], number),
+        "mode_probabilities": np.array(problem["initial"]["mode_probabilities"], number),
+        "means": [np.array(estimate["mean"], number) for estimate in problem["initial"]["modes"]],
+        "covariances": [np.array(estimate["covariance"], number) for estimate in problem["initial"]["modes"]],
+        "rule": points and tuple(part.astype(number) for part in points),
+        "square_root": SQUARE_ROOTS[options.conventions.get("square_root", "cholesky-lower")],
+        "mixes_first": options.conventions.get("first_step", "mixed") == "mixed",
+        "has_two_pi": options.conventions.get("log_likelihood", "full") == "full",
+        "number": number,
+    }
+
+
+def shown(number, step, show):
+    """A step of the filter below as a step of the trace. CHANGE HERE: whatever your filter can show."""
+    listed = {"step": number, "combined": estimate(step.combined)}
+    if show != "combined":
+        listed["mode_probabilities"] = step.mode_probabilities.tolist()
+        listed["modes"] = [{"updated": estimate(mode.updated)} for mode in step.modes]
+    if show == "everything":
+        listed["predicted_mode_probabilities"] = step.predicted_mode_probabilities.tolist()
+        listed["combined_prediction"] = estimate(step.combined_prediction)
+        for mode, values in zip(listed["modes"], step.modes):
+            mode["mixing_probabilities"] = values.mixing_probabilities.tolist()
+            mode["mixed"] = estimate(values.mixed)
+            mode["predicted"] = estimate(values.predicted)
+            if values.innovation is not None:
+                for name in MEASURED:
+                    mode[name] = getattr(values, name).tolist()
+    return listed
+
+
+MEASURED = ["predicted_measurement", "innovation", "innovation_covariance", "cross_covariance", "gain", "log_likelihood"]
+
+
+def estimate(gaussian):
+    """Mean and covariance as an object of lists."""
+    mean, covariance = gaussian
+    return {"mean": mean.tolist(), "covariance": covariance.tolist()}
+
+
+# ------------------------------------------------------------ the filter: what it is given, checked
+
+
+class Rejected(Exception):
+    """A problem that must not be run."""
+
+    def __init__(self, reason_class, reason):
+        super().__init__(reason)
+        self.reason_class = reason_class
+
+
+def check_problem(problem):
+    """Refuses what the filter cannot be given, in the classes of spec/formats.md."""
+    n, m, r = len(problem["state"]), len(problem["R"]), len(problem["modes"])
+    check_shapes(problem, n, m, r)
+    for i, row in enumerate(problem["transition"]):
+        check_probabilities(f"transition[{i}]", row)
+    check_probabilities("initial.mode_probabilities", problem["initial"]["mode_probabilities"])
+    for j, mode in enumerate(problem["modes"]):
+        check_covariance(f"modes[{j}].Q", mode["Q"], semidefinite=True)
+    check_covariance("R", problem["R"])
+    for j, initial in enumerate(problem["initial"]["modes"]):
+        check_covariance(f"initial.modes[{j}].covariance", initial["covariance"])
+    check_names(problem, n)
+    check_bearings(problem)
+
+
+def check_shapes(problem, n, m, r):
+    """Every list has the length that it must have."""
+    shapes = {"R": (problem["R"], (m, m)), "transition": (problem["transition"], (r, r))}
+    shapes["initial.mode_probabilities"] = (problem["initial"]["mode_probabilities"], (r,))
+    for j, mode in enumerate(problem["modes"]):
+        shapes[f"modes[{j}].F"] = (mode["F"], (n, n))
+        shapes[f"modes[{j}].Q"] = (mode["Q"], (n, n))
+    for j, initial in enumerate(problem["initial"]["modes"]):
+        shapes[f"initial.modes[{j}].mean"] = (initial["mean"], (n,))
+        shapes[f"initial.modes[{j}].covariance"] = (initial["covariance"], (n, n))
+    if problem["measurement"]["kind"] == "linear":
+        shapes["measurement.H"] = (problem["measurement"]["H"], (m, n))
+    for k, entry in enumerate(problem["measurements"]):
+        if entry["step"] != k + 1:
+            raise Rejected("shape", f"measurements[{k}].step is {entry['step']}, not {k + 1}")
+        if entry["z"] is not None:
+            shapes[f"measurements[{k}].z"] = (entry["z"], (m,))
+    if r == 0 or len(problem["initial"]["modes"]) != r:
+        raise Rejected("shape", f"{r} modes and {len(problem['initial']['modes'])} initial estimates")
+    for place, (values, shape) in shapes.items():
+        try:
+            found = np.array(values, float)
+        except ValueError as ragged:
+            raise Rejected("shape", f"{place} has rows of different lengths") from ragged
+        if found.shape != shape:
+            raise Rejected("shape", f"{place} is {found.shape}, not {shape}")
+        if not np.all(np.isfinite(found)):
+            raise Rejected("not-finite", f"{place} has an entry that is not finite")
+
+
+def check_probabilities(place, values):
+    """None is negative, and they sum to one as well as decimals of 15 digits can."""
+    if min(values) < 0 or abs(math.fsum(values) - 1) > 1e-15 * len(values) + 1e-16:
+        raise Rejected("not-a-probability", f"{place} is {values}")
+
+
+def check_covariance(place, rows, semidefinite=False):
+    """Symmetric, and positive definite or semidefinite."""
+    matrix = np.array(rows, float)
+    if not np.array_equal(matrix, matrix.T):
+        raise Rejected("not-symmetric", f"{place} is not symmetric")
+    # In units of its own diagonal, so that metres and radians count alike.
+    deviations = np.sqrt(np.maximum(np.diag(matrix), 0))
+    units = np.where(deviations > 0, deviations, 1)
+    least = np.linalg.eigvalsh(matrix / np.outer(units, units))[0]
+    if least < (-1e-14 * len(matrix) if semidefinite else 1e-15):
+        raise Rejected("not-positive-definite", f"{place} has the eigenvalue {least} in units of its diagonal")
+
+
+def check_names(problem, n):
+    """Filter, measurement and conventions are known ones."""
+    known = {"square_root": "cholesky-lower", "angle_mean": "centre-point", "first_step": "mixed", "log_likelihood": "full"}
+    if problem["conventions"] != known:
+        raise Rejected("unknown", f"conventions are {problem['conventions']}")
+    measurement = problem["measurement"]
+    if measurement["kind"] not in ("linear", "range-bearing"):
+        raise Rejected("unknown", f"measurement {measurement['kind']}")
+    if measurement["kind"] == "range-bearing":
+        if any(name not in ("range", "bearing") for name in measurement["components"]):
+            raise Rejected("unknown", f"components {measurement['components']}")
+        if len(measurement["components"]) != len(problem["R"]) or max(measurement["position"]) >= n:
+            raise Rejected("shape", "components or position do not fit")
+    if problem["filter"]["kind"] == "kalman":
+        if measurement["kind"] != "linear":
+            raise Rejected("unknown", "the Kalman filter has linear measurements only")
+    else:
+        rule(problem["filter"], n)
+
+
+def check_bearings(problem):
+    """A bearing beyond two turns is probably in degrees."""
+    for k, entry in enumerate(problem["measurements"]):
+        for name, value in zip(problem["measurement"].get("components", []), entry["z"] or []):
+            if name == "bearing" and abs(value) > 2 * math.pi:
+                raise Rejected("angle", f"measurements[{k}].z has the bearing {value}: is it in degrees?")
+
+
+# ---------------------------------------------------------------- the filter: rules and measurements
+
+
+def rule(parameters, n):
+    """Points (one a row), weights, and weights for covariances, for the standard Gaussian of n dimensions."""
+    name = parameters.get("rule", parameters["kind"])
+    if name == "unscented":
+        return unscented(n, parameters["alpha"], parameters["beta"], parameters["kappa"])
+    if name == "cubature-3":
+        points, weights = cubature_3(n)
+    elif name == "cubature-5":
+        points, weights = cubature_5(n)
+    elif name == "simplex-5" and n >= 2:
+        points, weights = simplex_5(n)
+    elif name in ("gauss-hermite-2", "gauss-hermite-3", "gauss-hermite-4", "gauss-hermite-5"):
+        points, weights = gauss_hermite(n, int(name[-1]))
+    else:
+        raise Rejected("unknown", f"there is no rule {name} in {n} dimensions")
+    return points, weights, weights
+
+
+def both(points):
+    """The points and their mirror images."""
+    return np.vstack([points, -points])
+
+
+def cubature_3(n):
+    """2n points on the axes."""
+    return both(math.sqrt(n) * np.eye(n)), np.full(2 * n, 1 / (2 * n))
+
+
+def unscented(n, alpha, beta, kappa):
+    """The centre and 2n points on the axes, with the covariance weight of the centre apart."""
+    spread = alpha**2 * (n + kappa)
+    if spread <= 0:
+        raise Rejected("unknown", f"n + lambda is {spread}")
+    points = np.vstack([np.zeros(n), both(math.sqrt(spread) * np.eye(n))])
+    weights = np.full(2 * n + 1, 1 / (2 * spread))
+    weights[0] = (spread - n) / spread
+    covariance_weights = weights.copy()
+    covariance_weights[0] += 1 - alpha**2 + beta
+    return points, weights, covariance_weights
+
+
+def cubature_5(n):
+    """The centre, the axes, and the diagonals of the coordinate planes: degree five."""
+    axes = np.eye(n)
+    diagonals = [(axes[i] + sign * axes[k]) / math.sqrt(2) for i in range(n) for k in range(i + 1, n) for sign in (1, -1)]
+    diagonals = np.array(diagonals).reshape(-1, n)
+    points = math.sqrt(n + 2) * np.vstack([np.zeros(n), both(axes), both(diagonals)])
+    parts = [np.full(1, 2 / (n + 2)), np.full(2 * n, (4 - n) / (2 * (n + 2) ** 2)), np.full(2 * len(diagonals), 1 / (n + 2) ** 2)]
+    return points, np.concatenate(parts)
+
+
+def simplex_5(n):
+    """The centre, the vertices of a regular simplex and the midpoints of its edges, and their mirror images: degree five."""
+    vertices = np.zeros((n + 1, n))
+    for j in range(1, n + 2):
+        for m in range(1, min(j, n + 1)):
+            vertices[j - 1, m - 1] = -math.sqrt((n + 1) / (n * (n - m + 2) * (n - m + 1)))
+        if j <= n:
+            vertices[j - 1, j - 1] = math.sqrt((n + 1) * (n - j + 1) / (n * (n - j + 2)))
+    edges = np.array([vertices[i] + vertices[k] for i in range(n + 1) for k in range(i + 1, n + 1)])
+    edges *= math.sqrt(n / (2 * (n - 1)))
+    points = math.sqrt(n + 2) * np.vstack([np.zeros(n), both(vertices), both(edges)])
+    scale = (n + 1) ** 2 * (n + 2) ** 2
+    vertex, edge = (7 - n) * n**2 / (2 * scale), 2 * (n - 1) ** 2 / scale
+    return points, np.concatenate([np.full(1, 2 / (n + 2)), np.full(2 * len(vertices), vertex), np.full(2 * len(edges), edge)])
+
+
+def gauss_hermite(n, nodes):
+    """The product of n one-dimensional rules."""
+    positions, weights = np.polynomial.hermite_e.hermegauss(nodes)
+    weights = weights / math.sqrt(2 * math.pi)
+    points = np.stack(np.meshgrid(*[positions] * n, indexing="ij"), axis=-1).reshape(-1, n)
+    products = np.prod(np.stack(np.meshgrid(*[weights] * n, indexing="ij"), axis=-1), axis=-1)
+    return points, products.reshape(-1)
+
+
+def wrapped(angle):
+    """The angle's equivalent in (-pi, pi]."""
+    turns = np.ceil((angle - math.pi) / (2 * math.pi))
+    return angle - 2 * math.pi * turns
+
+
+@dataclass
+class Measurement:
+    """What the sensor sees: H x, or ranges and bearings."""
+
+    number: type
+    matrix: np.ndarray = None
+    components: list = field(default_factory=list)
+    position: list = None
+    sensor: np.ndarray = None
+    angle_mean: str = "centre-point"
+
+    @staticmethod
+    def of(parameters, number, angle_mean):
+        """From the problem's object."""
+        if parameters["kind"] == "linear":
+            return Measurement(number, matrix=np.array(parameters["H"], number))
+        sensor = np.array(parameters["sensor"], number)
+        return Measurement(number, None, parameters["components"], parameters["position"], sensor, angle_mean)
+
+    def of_states(self, states):
+        """The measurements of states, one a row."""
+        if self.matrix is not None:
+            return states @ self.matrix.T
+        dx, dy = (states[:, self.position] - self.sensor).T
+        columns = {"range": np.sqrt(dx**2 + dy**2), "bearing": np.arctan2(dy, dx)}
+        return np.stack([columns[name] for name in self.components], axis=1)
+
+    def difference(self, a, b):
+        """a - b, with its bearings wrapped."""
+        difference = a - b
+        for row, name in enumerate(self.components):
+            if name == "bearing":
+                difference[..., row] = wrapped(difference[..., row])
+        return difference
+
+    def mean(self, weights, values, centre):
+        """The weighted mean of the points' measurements; bearings as differences from that of the centre."""
+        mean = weights @ values
+        for row, name in enumerate(self.components):
+            if name != "bearing":
+                continue
+            if self.angle_mean == "vector":
+                mean[row] = np.arctan2(weights @ np.sin(values[:, row]), weights @ np.cos(values[:, row]))
+            else:
+                mean[row] = centre[row] + weights @ wrapped(values[:, row] - centre[row])
+        return mean
+
+
+def cholesky_upper(covariance):
+    """U with P = U U', upper triangular."""
+    return np.linalg.cholesky(covariance[::-1, ::-1])[::-1, ::-1]
+
+
+def symmetric_root(covariance):
+    """The symmetric root."""
+    values, vectors = np.linalg.eigh(covariance)
+    return (vectors * np.sqrt(values)) @ vectors.T
+
+
+SQUARE_ROOTS = {"cholesky-lower": np.linalg.cholesky, "cholesky-upper": cholesky_upper, "symmetric": symmetric_root}
+
+
+# ------------------------------------------------------------------------------ the filter: the cycle
+
+
+@dataclass
+class Mode:
+    """What one mode computes in one step, in this order. An estimate is a pair of mean and covariance."""
+
+    index: int
+    mixing_probabilities: np.ndarray = None
+    mixed: tuple = None
+    predicted: tuple = None
+    predicted_measurement: np.ndarray = None
+    innovation: np.ndarray = None
+    innovation_covariance: np.ndarray = None
+    cross_covariance: np.ndarray = None
+    gain: np.ndarray = None
+    updated: tuple = None
+    log_likelihood: np.floating = None
+
+
+@dataclass
+class Step:
+    """What all modes compute in one step."""
+
+    modes: list
+    predicted_mode_probabilities: np.ndarray = None
+    combined_prediction: tuple = None
+    mode_probabilities: np.ndarray = None
+    combined: tuple = None
+
+
+class Imm:
+    """The interacting multiple model filter: r modes, each a Kalman filter or a filter with points."""
+
+    def __init__(self, transition_matrices, process_noises, measurement, measurement_noise, chain, mode_probabilities,
+                 means, covariances, rule=None, square_root=np.linalg.cholesky, mixes_first=True, has_two_pi=True,
+                 number=np.float64):
+        self.transition_matrices = transition_matrices  # F, one a mode
+        self.process_noises = process_noises  # Q, one a mode
+        self.measurement = measurement
+        self.measurement_noise = measurement_noise  # R
+        self.chain = chain  # chain[i, j] = P(mode j now | mode i before)
+        self.mode_probabilities = mode_probabilities
+        self.estimates = list(zip(means, covariances))
+        self.rule = rule  # points, weights, covariance weights; None for the Kalman filter
+        self.square_root = square_root
+        self.mixes = mixes_first
+        self.has_two_pi = has_two_pi
+        self.number = number
+
+    def step(self, z):
+        """One step with a measurement, or without a detection when z is None."""
+        now = Step([Mode(j) for j in range(len(self.estimates))])
+        now.predicted_mode_probabilities = self.predicted_mode_probabilities() if self.mixes else self.mode_probabilities
+        for mode in now.modes:
+            mode.mixing_probabilities = self.mixing_probabilities(mode, now.predicted_mode_probabilities)
+            mode.mixed = self.mixed(mode)
+            mode.predicted = self.predicted(mode)
+        now.combined_prediction = self.combined_prediction(now)
+        for mode in now.modes:
+            if z is None:
+                mode.updated = mode.predicted
+            else:
+                self.measure(mode)
+                mode.innovation = self.innovation(mode, z)
+                mode.gain = self.gain(mode)
+                mode.updated = self.updated(mode)
+                mode.log_likelihood = self.log_likelihood(mode)
+        now.mode_probabilities = self.undetected_probabilities(now) if z is None else self.updated_probabilities(now)
+        now.combined = self.combined(now)
+        self.estimates = [mode.updated for mode in now.modes]
+        self.mode_probabilities = now.mode_probabilities
+        self.mixes = True
+        return now
+
+    def predicted_mode_probabilities(self):
+        """c_j = sum over i of p_ij mu_i."""
+        return self.mode_probabilities @ self.chain
+
+    def mixing_probabilities(self, mode, predicted):
+        """mu_i|j = p_ij mu_i / c_j; a mode that cannot be reached keeps its own estimate."""
+        if not self.mixes or predicted[mode.index] == 0:
+            return np.eye(len(predicted), dtype=self.number)[mode.index]
+        return self.chain[:, mode.index] * self.mode_probabilities / predicted[mode.index]
+
+    def mixed(self, mode):
+        """What the mode's prediction starts from."""
+        return mixture(mode.mixing_probabilities, self.estimates)
+
+    def predicted(self, mode):
+        """F x and F P F' + Q, or the same by points."""
+        mean, covariance = mode.mixed
+        transition, noise = self.transition_matrices[mode.index], self.process_noises[mode.index]
+        if self.rule is None:
+            return transition @ mean, transition @ covariance @ transition.T + noise
+        _, weights, covariance_weights = self.rule
+        points = self.points(mode.mixed) @ transition.T
+        predicted = weights @ points
+        deviations = points - predicted
+        return predicted, (deviations.T * covariance_weights) @ deviations + noise
+
+    def points(self, estimate):
+        """The rule's points about an estimate, one a row."""
+        mean, covariance = estimate
+        return mean + self.rule[0] @ self.square_root(covariance).T
+
+    def measure(self, mode):
+        """Predicted measurement, its covariance S, and its covariance C with the state."""
+        mean, covariance = mode.predicted
+        noise = self.measurement_noise
+        if self.rule is None:
+            matrix = self.measurement.matrix
+            mode.predicted_measurement = matrix @ mean
+            mode.cross_covariance = covariance @ matrix.T
+            mode.innovation_covariance = matrix @ mode.cross_covariance + noise
+            return
+        _, weights, covariance_weights = self.rule
+        points = self.measured_points(mode)
+        values = self.measurement.of_states(points)
+        centre = self.measurement.of_states(mean[None, :])[0]
+        mode.predicted_measurement = self.measurement.mean(weights, values, centre)
+        deviations = self.measurement.difference(values, mode.predicted_measurement)
+        mode.innovation_covariance = (deviations.T * covariance_weights) @ deviations + noise
+        mode.cross_covariance = ((points - mean).T * covariance_weights) @ deviations
+
+    def measured_points(self, mode):
+        """The points that are measured: drawn afresh from the prediction, since the propagated ones know nothing of Q."""
+        return self.points(mode.predicted)
+
+    def innovation(self, mode, z):
+        """z minus the predicted measurement."""
+        return self.measurement.difference(z, mode.predicted_measurement)
+
+    def gain(self, mode):
+        """K = C S^-1."""
+        return np.linalg.solve(mode.innovation_covariance, mode.cross_covariance.T).T
+
+    def updated(self, mode):
+        """The mode's estimate after the measurement."""
+        mean, covariance = mode.predicted
+        return mean + mode.gain @ mode.innovation, covariance - mode.gain @ mode.innovation_covariance @ mode.gain.T
+
+    def log_likelihood(self, mode):
+        """ln N(innovation; 0, S), by the Cholesky factor of S."""
+        root = np.linalg.cholesky(mode.innovation_covariance)
+        normalised = np.linalg.solve(root, mode.innovation)
+        log_density = -normalised @ normalised / 2 - np.sum(np.log(np.diag(root)))
+        return log_density - self.two_pi(mode)
+
+    def two_pi(self, mode):
+        """(m/2) ln 2 pi, unless the convention is to leave it out."""
+        return len(mode.innovation) * math.log(2 * math.pi) / 2 if self.has_two_pi else 0.0
+
+    def updated_probabilities(self, now):
+        """Bayes' rule, with likelihoods relative to the greatest: none of them underflows."""
+        predicted = now.predicted_mode_probabilities
+        logs = np.array([mode.log_likelihood for mode in now.modes], self.number)
+        weights = predicted * np.exp(np.where(predicted > 0, logs - np.max(logs[predicted > 0]), 0))
+        return weights / np.sum(weights)
+
+    def undetected_probabilities(self, now):
+        """Without a detection the probabilities follow the chain."""
+        return now.predicted_mode_probabilities
+
+    def combined_prediction(self, now):
+        """The estimate before the measurement, for output."""
+        return mixture(now.predicted_mode_probabilities, [mode.predicted for mode in now.modes])
+
+    def combined(self, now):
+        """The estimate after the measurement, for output."""
+        return mixture(now.mode_probabilities, [mode.updated for mode in now.modes])
+
+
+def mixture(weights, estimates):
+    """Mean and covariance of a mixture: the covariances and the spread of the means."""
+    mean = sum(weight * mean for weight, (mean, _) in zip(weights, estimates))
+    covariance = sum(weight * (p + np.outer(x - mean, x - mean)) for weight, (x, p) in zip(weights, estimates))
+    return mean, covariance
+
+
+# ----------------------------------------------------------------- other algebra for the same exact values
+
+
+class Joseph(Imm):
+    """(I - K H) P (I - K H)' + K R K', which stays positive definite for any gain."""
+
+    def updated(self, mode):
+        mean, covariance = mode.predicted
+        gain, cross = mode.gain, mode.cross_covariance
+        if self.rule is None:
+            rest = np.eye(len(mean), dtype=self.number) - gain @ self.measurement.matrix
+            covariance = rest @ covariance @ rest.T + gain @ self.measurement_noise @ gain.T
+        else:
+            covariance = covariance - gain @ cross.T - cross @ gain.T + gain @ mode.innovation_covariance @ gain.T
+        return mean + gain @ mode.innovation, covariance
+
+
+class Inverse(Imm):
+    """S^-1 formed and multiplied, as in many programs."""
+
+    def gain(self, mode):
+        return mode.cross_covariance @ np.linalg.inv(mode.innovation_covariance)
+
+    def log_likelihood(self, mode):
+        inverse = np.linalg.inv(mode.innovation_covariance)
+        square = mode.innovation @ inverse @ mode.innovation
+        return -(square + np.log(np.linalg.det(mode.innovation_covariance))) / 2 - self.two_pi(mode)
+
+
+class Information(Imm):
+    """Information adds: P = (P^-1 + H' R^-1 H)^-1, for points with the H and R of the linear regression over them."""
+
+    def updated(self, mode):
+        mean, covariance = mode.predicted
+        inverse = np.linalg.inv(covariance)
+        matrix, noise = self.measurement.matrix, self.measurement_noise
+        if self.rule is not None:
+            matrix = mode.cross_covariance.T @ inverse
+            noise = mode.innovation_covariance - matrix @ mode.cross_covariance
+        updated = np.linalg.inv(inverse + matrix.T @ np.linalg.inv(noise) @ matrix)
+        return mean + updated @ matrix.T @ np.linalg.inv(noise) @ mode.innovation, updated
+
+
+FORMS = {"gain": Imm, "joseph": Joseph, "inverse": Inverse, "information": Information}
+
+
+# --------------------------------------------------------------------------------------- the command line
+
+
+def parse_options():
+    """What the head of this file lists."""
+    parser = argparse.ArgumentParser(description="an IMM filter in numpy under test")
+    parser.add_argument("--show", choices=["everything", "posteriors", "combined"], default="everything")
+    parser.add_argument("--form", choices=FORMS, default="gain")
+    parser.add_argument("--single", action="store_true")
+    parser.add_argument("--convention", action="append", default=[], metavar="KEY=VALUE")
+    parser.add_argument("--mistake", action="append", default=[], metavar="NAME")
+    options = parser.parse_args()
+    options.conventions = dict(pair.split("=", 1) for pair in options.convention)
+    return options
+
+
+def filter_class(options):
+    """The filter in the form that is asked for, with its planted mistakes."""
+    if not options.mistake:
+        return FORMS[options.form]
+    from numpy_mistakes import MISTAKES
+    return type("Mistaken", (*(MISTAKES[name] for name in options.mistake), FORMS[options.form]), {})
+
+
+if __name__ == "__main__":
+    np.seterr(divide="ignore", invalid="ignore", over="ignore", under="ignore")
+    main()

@@ -1,0 +1,267 @@
+"""Mistakes to plant in the filter of numpy_imm.py, each written as a programmer would make it.
+
+The names are those of the catalogue, spec/variants.toml; nothing else is shared with it. Each class overrides the method in which the
+mistake is made, so several can be planted at once.
+"""
+
+import math
+
+import numpy as np
+
+
+class TransitionTransposed:
+    """The chain is stored by columns: chain[j, i]."""
+
+    def __init__(self, **arguments):
+        arguments["chain"] = arguments["chain"].T
+        super().__init__(**arguments)
+
+
+class TransitionTransposedInMixing:
+    """The row in place of the column."""
+
+    def mixing_probabilities(self, mode, predicted):
+        if predicted[mode.index] == 0:
+            return super().mixing_probabilities(mode, predicted)
+        return self.chain[mode.index, :] * self.mode_probabilities / predicted[mode.index]
+
+
+class MixingSkipped:
+    """Every mode goes on from its own estimate."""
+
+    def mixed(self, mode):
+        return self.estimates[mode.index]
+
+
+class MixedSpreadOmitted:
+    """The covariances are averaged, the spread of the means is forgotten."""
+
+    def mixed(self, mode):
+        mean = sum(w * x for w, (x, _) in zip(mode.mixing_probabilities, self.estimates))
+        covariance = sum(w * p for w, (_, p) in zip(mode.mixing_probabilities, self.estimates))
+        return mean, covariance
+
+
+class CovariancesNotMixed:
+    """Means are mixed, covariances are not."""
+
+    def mixed(self, mode):
+        mean, _ = super().mixed(mode)
+        return mean, self.estimates[mode.index][1]
+
+
+class ProcessNoiseOmitted:
+    """Q is never added."""
+
+    def __init__(self, **arguments):
+        arguments["process_noises"] = [np.zeros_like(noise) for noise in arguments["process_noises"]]
+        super().__init__(**arguments)
+
+
+class ProcessNoiseDoubled:
+    """Q is added by the points' moments, and once more after them."""
+
+    def predicted(self, mode):
+        mean, covariance = super().predicted(mode)
+        return mean, covariance + self.process_noises[mode.index]
+
+
+class PointsNotDrawnAfresh:
+    """The propagated points are measured."""
+
+    def measured_points(self, mode):
+        return self.points(mode.mixed) @ self.transition_matrices[mode.index].T
+
+
+class PointsFromRowsOfTheRoot:
+    """The factor is applied from the wrong side: its rows move the points in place of its columns."""
+
+    def points(self, estimate):
+        mean, covariance = estimate
+        return mean + self.rule[0] @ self.square_root(covariance)
+
+
+class Cubature5Weight13:
+    """The diagonals' weight as zhu2016 (13) prints it: 2/(n + 2)^2."""
+
+    def __init__(self, **arguments):
+        points = arguments["rule"] and arguments["rule"][0]
+        if points is not None and len(points) == 2 * points.shape[1] ** 2 + 1:
+            n = points.shape[1]
+            weights = arguments["rule"][1].copy()
+            weights[1 + 2 * n:] = 2 / (n + 2) ** 2
+            if n > 1 and math.isclose(arguments["rule"][1][0], 2 / (n + 2), rel_tol=1e-6):
+                arguments["rule"] = (points, weights, weights)
+        super().__init__(**arguments)
+
+
+class MeasurementNoiseDoubled:
+    """R is in S already, and is added again."""
+
+    def measure(self, mode):
+        super().measure(mode)
+        mode.innovation_covariance = mode.innovation_covariance + self.measurement_noise
+
+
+class MeasurementNoiseOmitted:
+    """S = H P H'."""
+
+    def __init__(self, **arguments):
+        arguments["measurement_noise"] = np.zeros_like(arguments["measurement_noise"])
+        super().__init__(**arguments)
+
+
+class InnovationNotWrapped:
+    """z - z_predicted as plain numbers."""
+
+    def innovation(self, mode, z):
+        return z - mode.predicted_measurement
+
+
+class MeasurementOfTheMean:
+    """The measurement of the mean for the mean of the measurements."""
+
+    def measure(self, mode):
+        super().measure(mode)
+        mode.predicted_measurement = self.measurement.of_states(mode.predicted[0][None, :])[0]
+
+
+class GainOfMixedCovariance:
+    """The gain is computed before the prediction of the covariance; a Kalman filter's mistake."""
+
+    def gain(self, mode):
+        if self.rule is not None:
+            return super().gain(mode)
+        matrix, covariance = self.measurement.matrix, mode.mixed[1]
+        s = matrix @ covariance @ matrix.T + self.measurement_noise
+        return covariance @ matrix.T @ np.linalg.inv(s)
+
+
+class CovarianceNotUpdated:
+    """Only the mean is updated."""
+
+    def updated(self, mode):
+        mean, _ = super().updated(mode)
+        return mean, mode.predicted[1]
+
+
+class DeterminantOmitted:
+    """exp(-d^2/2), normalised by 2 pi alone."""
+
+    def log_likelihood(self, mode):
+        residual = mode.innovation
+        square = residual @ np.linalg.solve(mode.innovation_covariance, residual)
+        return -square / 2 - self.two_pi(mode)
+
+
+class ExponentWithoutHalf:
+    """exp(-d^2)."""
+
+    def log_likelihood(self, mode):
+        s, residual = mode.innovation_covariance, mode.innovation
+        square = residual @ np.linalg.solve(s, residual)
+        return -square - np.log(np.linalg.det(s)) / 2 - self.two_pi(mode)
+
+
+class LikelihoodOfUpdatedResidual:
+    """The residual after the update in place of the innovation; a Kalman filter's mistake."""
+
+    def log_likelihood(self, mode):
+        if self.rule is not None:
+            return super().log_likelihood(mode)
+        s = mode.innovation_covariance
+        z = mode.innovation + mode.predicted_measurement
+        residual = z - self.measurement.matrix @ mode.updated[0]
+        square = residual @ np.linalg.solve(s, residual)
+        return -(square + np.log(np.linalg.det(s))) / 2 - self.two_pi(mode)
+
+
+class UpdatedWithOldProbabilities:
+    """mu_j(k-1) L_j in place of c_j L_j."""
+
+    def updated_probabilities(self, now):
+        logs = np.array([mode.log_likelihood for mode in now.modes], self.number)
+        reachable = self.mode_probabilities > 0
+        relative = np.where(reachable, logs - np.max(logs[reachable]), -np.inf)
+        weights = self.mode_probabilities * np.exp(relative)
+        return weights / np.sum(weights)
+
+
+class PriorOmitted:
+    """L_j / sum of L."""
+
+    def updated_probabilities(self, now):
+        logs = np.array([mode.log_likelihood for mode in now.modes], self.number)
+        weights = np.exp(logs - np.max(logs))
+        return weights / np.sum(weights)
+
+
+class ProbabilitiesNotAdvanced:
+    """Nothing is done without a detection, with the probabilities either."""
+
+    def undetected_probabilities(self, now):
+        return self.mode_probabilities
+
+
+class LastLikelihoodUsedAgain:
+    """The likelihoods of the last detection still stand in their variables."""
+
+    likelihoods = None
+
+    def updated_probabilities(self, now):
+        self.likelihoods = [mode.log_likelihood for mode in now.modes]
+        return super().updated_probabilities(now)
+
+    def undetected_probabilities(self, now):
+        if self.likelihoods is None:
+            return now.predicted_mode_probabilities
+        reachable = now.predicted_mode_probabilities > 0
+        logs = np.where(reachable, self.likelihoods, -np.inf)
+        weights = now.predicted_mode_probabilities * np.exp(logs - np.max(logs))
+        return weights / np.sum(weights)
+
+
+class CombinedSpreadOmitted:
+    """The covariances are averaged, the spread of the means is forgotten."""
+
+    def combined(self, now):
+        mean, _ = super().combined(now)
+        return mean, sum(w * mode.updated[1] for w, mode in zip(now.mode_probabilities, now.modes))
+
+
+class CombinedWithPredictedProbabilities:
+    """c_j in place of mu_j."""
+
+    def combined(self, now):
+        weights, estimates = now.predicted_mode_probabilities, [mode.updated for mode in now.modes]
+        mean = sum(w * x for w, (x, _) in zip(weights, estimates))
+        return mean, sum(w * (p + np.outer(x - mean, x - mean)) for w, (x, p) in zip(weights, estimates))
+
+
+MISTAKES = {
+    "transition-transposed": TransitionTransposed,
+    "transition-transposed-in-mixing": TransitionTransposedInMixing,
+    "mixing-skipped": MixingSkipped,
+    "mixed-spread-omitted": MixedSpreadOmitted,
+    "covariances-not-mixed": CovariancesNotMixed,
+    "process-noise-omitted": ProcessNoiseOmitted,
+    "process-noise-doubled": ProcessNoiseDoubled,
+    "points-not-drawn-afresh": PointsNotDrawnAfresh,
+    "points-from-rows-of-the-root": PointsFromRowsOfTheRoot,
+    "cubature-5-weight-13": Cubature5Weight13,
+    "measurement-noise-doubled": MeasurementNoiseDoubled,
+    "measurement-noise-omitted": MeasurementNoiseOmitted,
+    "innovation-not-wrapped": InnovationNotWrapped,
+    "measurement-of-the-mean": MeasurementOfTheMean,
+    "gain-of-mixed-covariance": GainOfMixedCovariance,
+    "covariance-not-updated": CovarianceNotUpdated,
+    "determinant-omitted": DeterminantOmitted,
+    "exponent-without-half": ExponentWithoutHalf,
+    "likelihood-of-updated-residual": LikelihoodOfUpdatedResidual,
+    "updated-with-old-probabilities": UpdatedWithOldProbabilities,
+    "prior-omitted": PriorOmitted,
+    "probabilities-not-advanced": ProbabilitiesNotAdvanced,
+    "last-likelihood-used-again": LastLikelihoodUsedAgain,
+    "combined-spread-omitted": CombinedSpreadOmitted,
+    "combined-with-predicted-probabilities": CombinedWithPredictedProbabilities,
+}
