@@ -3,14 +3,16 @@
 
     immaculate check -- python3 tests/adapters/filterpy_imm.py
 
-Nothing is computed here that FilterPy computes, and whatever its classes let a user see is shown. Where a function must be supplied
-(the mean and the difference of measurements with a bearing) it is the one of FilterPy's documentation.
+Nothing is computed here that FilterPy computes, and whatever its classes let a user see is shown.
+Where a function must be supplied (the mean and the difference of measurements with a bearing) it
+is the one of FilterPy's documentation.
 
     problem             FilterPy
     one mode            the mode's filter alone
     several modes       kalman.IMMEstimator over the modes' filters
     kalman              kalman.KalmanFilter
-    unscented           kalman.UnscentedKalmanFilter with JulierSigmaPoints where alpha = 1 and beta = 0, else MerweScaledSigmaPoints
+    unscented           kalman.UnscentedKalmanFilter; its points are JulierSigmaPoints where
+                        alpha = 1 and beta = 0, MerweScaledSigmaPoints elsewhere
     cubature-3          kalman.CubatureKalmanFilter
     no detection        update(None)
 """
@@ -30,7 +32,7 @@ from filterpy.kalman import (
     UnscentedKalmanFilter,
 )
 
-# ---------------------------------------------------------------------------------------- the protocol
+# ---------------------------------------------------------------------------- the protocol
 
 
 def main():
@@ -71,7 +73,7 @@ def run(problem):
     return answer
 
 
-# ----------------------------------------------------------------------------------------- the mapping
+# ----------------------------------------------------------------------------- the mapping
 
 
 def step(entry, filters, imm):
@@ -113,8 +115,13 @@ def column(kf, length):
 
 
 def imm_of(problem, filters):
-    """The IMM over the modes' filters. Its documentation has M[i, j] from j to i; its code has it from i to j, and that is used."""
-    return IMMEstimator(filters, problem["initial"]["mode_probabilities"], np.array(problem["transition"]))
+    """The IMM over the modes' filters.
+
+    Its documentation has M[i, j] from j to i; its code has it from i to j, and that is used.
+    """
+    return IMMEstimator(
+        filters, problem["initial"]["mode_probabilities"], np.array(problem["transition"])
+    )
 
 
 def filter_of(problem, j):
@@ -150,11 +157,15 @@ def points_of(parameters, n):
 
 
 def functions_of(measurement):
-    """hx, and for bearings the mean and the difference, as FilterPy's documentation writes them."""
+    """hx, and the mean and difference of bearings as FilterPy's documentation has them."""
     if measurement["kind"] == "linear":
         matrix = np.array(measurement["H"])
         return {"hx": lambda x: matrix @ x}
-    components, position, sensor = measurement["components"], measurement["position"], measurement["sensor"]
+    components, position, sensor = (
+        measurement["components"],
+        measurement["position"],
+        measurement["sensor"],
+    )
 
     def hx(x):
         dx, dy = x[position[0]] - sensor[0], x[position[1]] - sensor[1]

@@ -3,16 +3,17 @@
 
     immaculate check -- python3 tests/adapters/numpy_imm.py
 
-The first half is the adapter: the protocol, and the mapping between the problem's JSON and the filter's arguments. To check a filter
-of your own, keep it and change the lines marked CHANGE HERE. The second half is the filter, which knows nothing of the protocol.
+The first half is the adapter: the protocol, and the mapping between the problem's JSON and the
+filter's arguments. To check a filter of your own, keep it and change the lines marked CHANGE HERE.
+The second half is the filter, which knows nothing of the protocol.
 
 Options, to see what the verdicts look like:
 
-    --show everything|posteriors|combined   how much of a step is shown
-    --form gain|joseph|inverse|information  the algebra of the update: other roundings, the same exact values
-    --single                                all arithmetic in single precision
-    --convention KEY=VALUE                  another convention, which is declared; see spec/formats.md
-    --mistake NAME                          a planted mistake, see numpy_mistakes.py; may be given more than once
+    --show everything|posteriors|combined    how much of a step is shown
+    --form gain|joseph|inverse|information   other algebra for the same exact values
+    --single                                 all arithmetic in single precision
+    --convention KEY=VALUE                   another convention, declared (see spec/formats.md)
+    --mistake NAME                           a planted mistake (numpy_mistakes.py); may be repeated
 """
 
 import argparse
@@ -23,7 +24,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-# --------------------------------------------------------------------- the adapter: the protocol
+# --------------------------------------------------------------- the adapter: the protocol
 
 
 def main():
@@ -45,14 +46,18 @@ def ready(message, options):
     echo = message["echo"]
     return {
         "type": "ready",
-        "name": "numpy example" if not options.mistake else "numpy example with " + " and ".join(options.mistake),  # CHANGE HERE
+        "name": (
+            "numpy example"
+            if not options.mistake
+            else "numpy example with " + " and ".join(options.mistake)
+        ),  # CHANGE HERE
         "precision": "single" if options.single else "double",
         "conventions": options.conventions,
         "echo": (np.array(echo["matrix"]) @ np.array(echo["vector"])).tolist(),
     }
 
 
-# ---------------------------------------------------------------------- the adapter: the mapping
+# ---------------------------------------------------------------- the adapter: the mapping
 
 
 def run(problem, options):
@@ -62,7 +67,12 @@ def run(problem, options):
         check_problem(problem)
         arguments = arguments_of(problem, options)
     except Rejected as rejected:
-        return {"type": "rejected", "id": problem["id"], "class": rejected.reason_class, "reason": str(rejected)}
+        return {
+            "type": "rejected",
+            "id": problem["id"],
+            "class": rejected.reason_class,
+            "reason": str(rejected),
+        }
     try:
         imm = filter_class(options)(**arguments)  # CHANGE HERE: make your filter
         for entry in problem["measurements"]:
@@ -83,12 +93,16 @@ def arguments_of(problem, options):
     return {
         "transition_matrices": [np.array(mode["F"], number) for mode in problem["modes"]],
         "process_noises": [np.array(mode["Q"], number) for mode in problem["modes"]],
-        "measurement": Measurement.of(problem["measurement"], number, options.conventions.get("angle_mean", "centre-point")),
+        "measurement": Measurement.of(
+            problem["measurement"], number, options.conventions.get("angle_mean", "centre-point")
+        ),
         "measurement_noise": np.array(problem["R"], number),
         "chain": np.array(problem["transition"], number),
         "mode_probabilities": np.array(problem["initial"]["mode_probabilities"], number),
         "means": [np.array(estimate["mean"], number) for estimate in problem["initial"]["modes"]],
-        "covariances": [np.array(estimate["covariance"], number) for estimate in problem["initial"]["modes"]],
+        "covariances": [
+            np.array(estimate["covariance"], number) for estimate in problem["initial"]["modes"]
+        ],
         "rule": points and tuple(part.astype(number) for part in points),
         "square_root": SQUARE_ROOTS[options.conventions.get("square_root", "cholesky-lower")],
         "mixes_first": options.conventions.get("first_step", "mixed") == "mixed",
@@ -98,7 +112,7 @@ def arguments_of(problem, options):
 
 
 def shown(number, step, show):
-    """A step of the filter below as a step of the trace. CHANGE HERE: whatever your filter can show."""
+    """A step of the filter as a step of the trace. CHANGE HERE: whatever your filter can show."""
     listed = {"step": number, "combined": estimate(step.combined)}
     if show != "combined":
         listed["mode_probabilities"] = step.mode_probabilities.tolist()
@@ -116,7 +130,14 @@ def shown(number, step, show):
     return listed
 
 
-MEASURED = ["predicted_measurement", "innovation", "innovation_covariance", "cross_covariance", "gain", "log_likelihood"]
+MEASURED = [
+    "predicted_measurement",
+    "innovation",
+    "innovation_covariance",
+    "cross_covariance",
+    "gain",
+    "log_likelihood",
+]
 
 
 def estimate(gaussian):
@@ -125,7 +146,7 @@ def estimate(gaussian):
     return {"mean": mean.tolist(), "covariance": covariance.tolist()}
 
 
-# ------------------------------------------------------------ the filter: what it is given, checked
+# --------------------------------------------------- the filter: what it is given, checked
 
 
 class Rejected(Exception):
@@ -170,7 +191,9 @@ def check_shapes(problem, n, m, r):
         if entry["z"] is not None:
             shapes[f"measurements[{k}].z"] = (entry["z"], (m,))
     if r == 0 or len(problem["initial"]["modes"]) != r:
-        raise Rejected("shape", f"{r} modes and {len(problem['initial']['modes'])} initial estimates")
+        raise Rejected(
+            "shape", f"{r} modes and {len(problem['initial']['modes'])} initial estimates"
+        )
     for place, (values, shape) in shapes.items():
         try:
             found = np.array(values, float)
@@ -198,12 +221,19 @@ def check_covariance(place, rows, semidefinite=False):
     units = np.where(deviations > 0, deviations, 1)
     least = np.linalg.eigvalsh(matrix / np.outer(units, units))[0]
     if least < (-1e-14 * len(matrix) if semidefinite else 1e-15):
-        raise Rejected("not-positive-definite", f"{place} has the eigenvalue {least} in units of its diagonal")
+        raise Rejected(
+            "not-positive-definite", f"{place} has the eigenvalue {least} in units of its diagonal"
+        )
 
 
 def check_names(problem, n):
     """Filter, measurement and conventions are known ones."""
-    known = {"square_root": "cholesky-lower", "angle_mean": "centre-point", "first_step": "mixed", "log_likelihood": "full"}
+    known = {
+        "square_root": "cholesky-lower",
+        "angle_mean": "centre-point",
+        "first_step": "mixed",
+        "log_likelihood": "full",
+    }
     if problem["conventions"] != known:
         raise Rejected("unknown", f"conventions are {problem['conventions']}")
     measurement = problem["measurement"]
@@ -212,7 +242,10 @@ def check_names(problem, n):
     if measurement["kind"] == "range-bearing":
         if any(name not in ("range", "bearing") for name in measurement["components"]):
             raise Rejected("unknown", f"components {measurement['components']}")
-        if len(measurement["components"]) != len(problem["R"]) or max(measurement["position"]) >= n:
+        if (
+            len(measurement["components"]) != len(problem["R"])
+            or max(measurement["position"]) >= n
+        ):
             raise Rejected("shape", "components or position do not fit")
     if problem["filter"]["kind"] == "kalman":
         if measurement["kind"] != "linear":
@@ -226,14 +259,16 @@ def check_bearings(problem):
     for k, entry in enumerate(problem["measurements"]):
         for name, value in zip(problem["measurement"].get("components", []), entry["z"] or []):
             if name == "bearing" and abs(value) > 2 * math.pi:
-                raise Rejected("angle", f"measurements[{k}].z has the bearing {value}: is it in degrees?")
+                raise Rejected(
+                    "angle", f"measurements[{k}].z has the bearing {value}: is it in degrees?"
+                )
 
 
-# ---------------------------------------------------------------- the filter: rules and measurements
+# ------------------------------------------------------ the filter: rules and measurements
 
 
 def rule(parameters, n):
-    """Points (one a row), weights, and weights for covariances, for the standard Gaussian of n dimensions."""
+    """Points (one a row), weights, and weights for covariances, for the standard Gaussian."""
     name = parameters.get("rule", parameters["kind"])
     if name == "unscented":
         return unscented(n, parameters["alpha"], parameters["beta"], parameters["kappa"])
@@ -276,27 +311,44 @@ def unscented(n, alpha, beta, kappa):
 def cubature_5(n):
     """The centre, the axes, and the diagonals of the coordinate planes: degree five."""
     axes = np.eye(n)
-    diagonals = [(axes[i] + sign * axes[k]) / math.sqrt(2) for i in range(n) for k in range(i + 1, n) for sign in (1, -1)]
+    diagonals = [
+        (axes[i] + sign * axes[k]) / math.sqrt(2)
+        for i in range(n)
+        for k in range(i + 1, n)
+        for sign in (1, -1)
+    ]
     diagonals = np.array(diagonals).reshape(-1, n)
     points = math.sqrt(n + 2) * np.vstack([np.zeros(n), both(axes), both(diagonals)])
-    parts = [np.full(1, 2 / (n + 2)), np.full(2 * n, (4 - n) / (2 * (n + 2) ** 2)), np.full(2 * len(diagonals), 1 / (n + 2) ** 2)]
+    parts = [
+        np.full(1, 2 / (n + 2)),
+        np.full(2 * n, (4 - n) / (2 * (n + 2) ** 2)),
+        np.full(2 * len(diagonals), 1 / (n + 2) ** 2),
+    ]
     return points, np.concatenate(parts)
 
 
 def simplex_5(n):
-    """The centre, the vertices of a regular simplex and the midpoints of its edges, and their mirror images: degree five."""
+    """The centre, and a simplex's vertices and edges, and their mirror images: degree five."""
     vertices = np.zeros((n + 1, n))
     for j in range(1, n + 2):
         for m in range(1, min(j, n + 1)):
             vertices[j - 1, m - 1] = -math.sqrt((n + 1) / (n * (n - m + 2) * (n - m + 1)))
         if j <= n:
             vertices[j - 1, j - 1] = math.sqrt((n + 1) * (n - j + 1) / (n * (n - j + 2)))
-    edges = np.array([vertices[i] + vertices[k] for i in range(n + 1) for k in range(i + 1, n + 1)])
+    edges = np.array(
+        [vertices[i] + vertices[k] for i in range(n + 1) for k in range(i + 1, n + 1)]
+    )
     edges *= math.sqrt(n / (2 * (n - 1)))
     points = math.sqrt(n + 2) * np.vstack([np.zeros(n), both(vertices), both(edges)])
     scale = (n + 1) ** 2 * (n + 2) ** 2
     vertex, edge = (7 - n) * n**2 / (2 * scale), 2 * (n - 1) ** 2 / scale
-    return points, np.concatenate([np.full(1, 2 / (n + 2)), np.full(2 * len(vertices), vertex), np.full(2 * len(edges), edge)])
+    return points, np.concatenate(
+        [
+            np.full(1, 2 / (n + 2)),
+            np.full(2 * len(vertices), vertex),
+            np.full(2 * len(edges), edge),
+        ]
+    )
 
 
 def gauss_hermite(n, nodes):
@@ -331,7 +383,9 @@ class Measurement:
         if parameters["kind"] == "linear":
             return Measurement(number, matrix=np.array(parameters["H"], number))
         sensor = np.array(parameters["sensor"], number)
-        return Measurement(number, None, parameters["components"], parameters["position"], sensor, angle_mean)
+        return Measurement(
+            number, None, parameters["components"], parameters["position"], sensor, angle_mean
+        )
 
     def of_states(self, states):
         """The measurements of states, one a row."""
@@ -350,13 +404,15 @@ class Measurement:
         return difference
 
     def mean(self, weights, values, centre):
-        """The weighted mean of the points' measurements; bearings as differences from that of the centre."""
+        """The points' mean measurement; bearings as differences from that of the centre."""
         mean = weights @ values
         for row, name in enumerate(self.components):
             if name != "bearing":
                 continue
             if self.angle_mean == "vector":
-                mean[row] = np.arctan2(weights @ np.sin(values[:, row]), weights @ np.cos(values[:, row]))
+                mean[row] = np.arctan2(
+                    weights @ np.sin(values[:, row]), weights @ np.cos(values[:, row])
+                )
             else:
                 mean[row] = centre[row] + weights @ wrapped(values[:, row] - centre[row])
         return mean
@@ -373,15 +429,19 @@ def symmetric_root(covariance):
     return (vectors * np.sqrt(values)) @ vectors.T
 
 
-SQUARE_ROOTS = {"cholesky-lower": np.linalg.cholesky, "cholesky-upper": cholesky_upper, "symmetric": symmetric_root}
+SQUARE_ROOTS = {
+    "cholesky-lower": np.linalg.cholesky,
+    "cholesky-upper": cholesky_upper,
+    "symmetric": symmetric_root,
+}
 
 
-# ------------------------------------------------------------------------------ the filter: the cycle
+# ------------------------------------------------------------------- the filter: the cycle
 
 
 @dataclass
 class Mode:
-    """What one mode computes in one step, in this order. An estimate is a pair of mean and covariance."""
+    """What one mode computes in a step, in this order; estimates are (mean, covariance)."""
 
     index: int
     mixing_probabilities: np.ndarray = None
@@ -408,11 +468,24 @@ class Step:
 
 
 class Imm:
-    """The interacting multiple model filter: r modes, each a Kalman filter or a filter with points."""
+    """The interacting multiple model filter: modes of Kalman filters or of filters with points."""
 
-    def __init__(self, transition_matrices, process_noises, measurement, measurement_noise, chain, mode_probabilities,
-                 means, covariances, rule=None, square_root=np.linalg.cholesky, mixes_first=True, has_two_pi=True,
-                 number=np.float64):
+    def __init__(
+        self,
+        transition_matrices,
+        process_noises,
+        measurement,
+        measurement_noise,
+        chain,
+        mode_probabilities,
+        means,
+        covariances,
+        rule=None,
+        square_root=np.linalg.cholesky,
+        mixes_first=True,
+        has_two_pi=True,
+        number=np.float64,
+    ):
         self.transition_matrices = transition_matrices  # F, one a mode
         self.process_noises = process_noises  # Q, one a mode
         self.measurement = measurement
@@ -429,9 +502,13 @@ class Imm:
     def step(self, z):
         """One step with a measurement, or without a detection when z is None."""
         now = Step([Mode(j) for j in range(len(self.estimates))])
-        now.predicted_mode_probabilities = self.predicted_mode_probabilities() if self.mixes else self.mode_probabilities
+        now.predicted_mode_probabilities = (
+            self.predicted_mode_probabilities() if self.mixes else self.mode_probabilities
+        )
         for mode in now.modes:
-            mode.mixing_probabilities = self.mixing_probabilities(mode, now.predicted_mode_probabilities)
+            mode.mixing_probabilities = self.mixing_probabilities(
+                mode, now.predicted_mode_probabilities
+            )
             mode.mixed = self.mixed(mode)
             mode.predicted = self.predicted(mode)
         now.combined_prediction = self.combined_prediction(now)
@@ -444,7 +521,9 @@ class Imm:
                 mode.gain = self.gain(mode)
                 mode.updated = self.updated(mode)
                 mode.log_likelihood = self.log_likelihood(mode)
-        now.mode_probabilities = self.undetected_probabilities(now) if z is None else self.updated_probabilities(now)
+        now.mode_probabilities = (
+            self.undetected_probabilities(now) if z is None else self.updated_probabilities(now)
+        )
         now.combined = self.combined(now)
         self.estimates = [mode.updated for mode in now.modes]
         self.mode_probabilities = now.mode_probabilities
@@ -502,7 +581,7 @@ class Imm:
         mode.cross_covariance = ((points - mean).T * covariance_weights) @ deviations
 
     def measured_points(self, mode):
-        """The points that are measured: drawn afresh from the prediction, since the propagated ones know nothing of Q."""
+        """The points to be measured: drawn afresh, since the propagated ones lack Q."""
         return self.points(mode.predicted)
 
     def innovation(self, mode, z):
@@ -516,7 +595,10 @@ class Imm:
     def updated(self, mode):
         """The mode's estimate after the measurement."""
         mean, covariance = mode.predicted
-        return mean + mode.gain @ mode.innovation, covariance - mode.gain @ mode.innovation_covariance @ mode.gain.T
+        return (
+            mean + mode.gain @ mode.innovation,
+            covariance - mode.gain @ mode.innovation_covariance @ mode.gain.T,
+        )
 
     def log_likelihood(self, mode):
         """ln N(innovation; 0, S), by the Cholesky factor of S."""
@@ -533,7 +615,9 @@ class Imm:
         """Bayes' rule, with likelihoods relative to the greatest: none of them underflows."""
         predicted = now.predicted_mode_probabilities
         logs = np.array([mode.log_likelihood for mode in now.modes], self.number)
-        weights = predicted * np.exp(np.where(predicted > 0, logs - np.max(logs[predicted > 0]), 0))
+        weights = predicted * np.exp(
+            np.where(predicted > 0, logs - np.max(logs[predicted > 0]), 0)
+        )
         return weights / np.sum(weights)
 
     def undetected_probabilities(self, now):
@@ -552,11 +636,13 @@ class Imm:
 def mixture(weights, estimates):
     """Mean and covariance of a mixture: the covariances and the spread of the means."""
     mean = sum(weight * mean for weight, (mean, _) in zip(weights, estimates))
-    covariance = sum(weight * (p + np.outer(x - mean, x - mean)) for weight, (x, p) in zip(weights, estimates))
+    covariance = sum(
+        weight * (p + np.outer(x - mean, x - mean)) for weight, (x, p) in zip(weights, estimates)
+    )
     return mean, covariance
 
 
-# ----------------------------------------------------------------- other algebra for the same exact values
+# ------------------------------------------------- other algebra for the same exact values
 
 
 class Joseph(Imm):
@@ -569,7 +655,12 @@ class Joseph(Imm):
             rest = np.eye(len(mean), dtype=self.number) - gain @ self.measurement.matrix
             covariance = rest @ covariance @ rest.T + gain @ self.measurement_noise @ gain.T
         else:
-            covariance = covariance - gain @ cross.T - cross @ gain.T + gain @ mode.innovation_covariance @ gain.T
+            covariance = (
+                covariance
+                - gain @ cross.T
+                - cross @ gain.T
+                + gain @ mode.innovation_covariance @ gain.T
+            )
         return mean + gain @ mode.innovation, covariance
 
 
@@ -582,11 +673,13 @@ class Inverse(Imm):
     def log_likelihood(self, mode):
         inverse = np.linalg.inv(mode.innovation_covariance)
         square = mode.innovation @ inverse @ mode.innovation
-        return -(square + np.log(np.linalg.det(mode.innovation_covariance))) / 2 - self.two_pi(mode)
+        return -(square + np.log(np.linalg.det(mode.innovation_covariance))) / 2 - self.two_pi(
+            mode
+        )
 
 
 class Information(Imm):
-    """Information adds: P = (P^-1 + H' R^-1 H)^-1, for points with the H and R of the linear regression over them."""
+    """P = (P^-1 + H' R^-1 H)^-1; with points, the H and R of the linear regression over them."""
 
     def updated(self, mode):
         mean, covariance = mode.predicted
@@ -602,13 +695,15 @@ class Information(Imm):
 FORMS = {"gain": Imm, "joseph": Joseph, "inverse": Inverse, "information": Information}
 
 
-# --------------------------------------------------------------------------------------- the command line
+# ------------------------------------------------------------------------ the command line
 
 
 def parse_options():
     """What the head of this file lists."""
     parser = argparse.ArgumentParser(description="an IMM filter in numpy under test")
-    parser.add_argument("--show", choices=["everything", "posteriors", "combined"], default="everything")
+    parser.add_argument(
+        "--show", choices=["everything", "posteriors", "combined"], default="everything"
+    )
     parser.add_argument("--form", choices=FORMS, default="gain")
     parser.add_argument("--single", action="store_true")
     parser.add_argument("--convention", action="append", default=[], metavar="KEY=VALUE")
@@ -623,7 +718,10 @@ def filter_class(options):
     if not options.mistake:
         return FORMS[options.form]
     from numpy_mistakes import MISTAKES
-    return type("Mistaken", (*(MISTAKES[name] for name in options.mistake), FORMS[options.form]), {})
+
+    return type(
+        "Mistaken", (*(MISTAKES[name] for name in options.mistake), FORMS[options.form]), {}
+    )
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """Mistakes to plant in the filter of numpy_imm.py, each written as a programmer would make it.
 
-The names are those of the catalogue, spec/variants.toml; nothing else is shared with it. Each class overrides the method in which the
-mistake is made, so several can be planted at once.
+The names are those of the catalogue, spec/variants.toml; nothing else is shared with it. Each
+class overrides the method in which the mistake is made, so several can be planted at once.
 """
 
 import math
@@ -54,7 +54,9 @@ class ProcessNoiseOmitted:
     """Q is never added."""
 
     def __init__(self, **arguments):
-        arguments["process_noises"] = [np.zeros_like(noise) for noise in arguments["process_noises"]]
+        arguments["process_noises"] = [
+            np.zeros_like(noise) for noise in arguments["process_noises"]
+        ]
         super().__init__(**arguments)
 
 
@@ -74,7 +76,7 @@ class PointsNotDrawnAfresh:
 
 
 class PointsFromRowsOfTheRoot:
-    """The factor is applied from the wrong side: its rows move the points in place of its columns."""
+    """The factor is applied from the wrong side: its rows move the points, not its columns."""
 
     def points(self, estimate):
         mean, covariance = estimate
@@ -89,7 +91,7 @@ class Cubature5Weight13:
         if points is not None and len(points) == 2 * points.shape[1] ** 2 + 1:
             n = points.shape[1]
             weights = arguments["rule"][1].copy()
-            weights[1 + 2 * n:] = 2 / (n + 2) ** 2
+            weights[1 + 2 * n :] = 2 / (n + 2) ** 2
             if n > 1 and math.isclose(arguments["rule"][1][0], 2 / (n + 2), rel_tol=1e-6):
                 arguments["rule"] = (points, weights, weights)
         super().__init__(**arguments)
@@ -235,7 +237,9 @@ class CombinedWithPredictedProbabilities:
     def combined(self, now):
         weights, estimates = now.predicted_mode_probabilities, [mode.updated for mode in now.modes]
         mean = sum(w * x for w, (x, _) in zip(weights, estimates))
-        return mean, sum(w * (p + np.outer(x - mean, x - mean)) for w, (x, p) in zip(weights, estimates))
+        return mean, sum(
+            w * (p + np.outer(x - mean, x - mean)) for w, (x, p) in zip(weights, estimates)
+        )
 
 
 MISTAKES = {

@@ -7,8 +7,8 @@
 % octave_imm(problems, answers) reads each problem of the folder `problems` and writes `answers/ID.json`;
 % octave_imm(problems, answers, 'csv') writes `answers/ID.csv`, the long form with one number a line.
 %
-% The first half is the adapter: files, and the mapping between the JSON and the filter's arguments. To check a filter of your own,
-% keep it and change the lines marked CHANGE HERE. The second half is the filter.
+% The first half is the adapter: files, and the mapping between the JSON and the filter's arguments. To
+% check a filter of your own, keep it and change the lines marked CHANGE HERE. The second half is the filter.
 
 function octave_imm(problems, answers, form)
   if nargin < 3
@@ -21,10 +21,10 @@ function octave_imm(problems, answers, form)
   ready.kinds = {'kalman', 'cubature-3'};              % CHANGE HERE: which filters there are
   ready.validates = false;                             % problems that must be rejected are not asked for
   write_text(fullfile(answers, 'ready.json'), jsonencode(ready));
-  files = dir(fullfile(problems, '*.json'));
+  files = dir(fullfile(problems, '*.problem.json'));
   for f = 1:numel(files)
     problem = jsondecode(fileread(fullfile(problems, files(f).name)));
-    if ~isfield(problem, 'filter') || ~any(strcmp(kind_of(problem), ready.kinds))
+    if ~any(strcmp(kind_of(problem), ready.kinds))
       continue
     end
     try
@@ -52,8 +52,8 @@ end
 
 % A problem, step by step. CHANGE HERE: how your filter is made, stepped and looked into.
 %
-% What jsondecode makes of JSON: a matrix is a matrix, [[5]] the scalar 5, a list of numbers a column, null is []; a list of objects
-% with the same keys is a struct array, with a single object too.
+% What jsondecode makes of JSON: a matrix is a matrix, [[5]] the scalar 5, a list of numbers a column, null
+% is []; a list of objects with the same keys is a struct array, with a single object too.
 function steps = run(problem)
   imm.F = {problem.modes.F};
   imm.Q = {problem.modes.Q};

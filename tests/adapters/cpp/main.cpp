@@ -34,7 +34,9 @@ static json rows(const MatrixXd &values) {
     return result;
 }
 
-static json object(const Estimate &estimate) { return {{"mean", list(estimate.mean)}, {"covariance", rows(estimate.covariance)}}; }
+static json object(const Estimate &estimate) {
+    return {{"mean", list(estimate.mean)}, {"covariance", rows(estimate.covariance)}};
+}
 
 // CHANGE HERE: your filter from a problem
 static Imm filter_of(const json &problem) {

@@ -1,0 +1,155 @@
+#!/usr/bin/env bash
+# Checks every program of this folder and holds the verdicts to what they must be.
+#
+# Needs a Rust toolchain, Python with venv, and a network for PyPI. Octave, a C++ compiler and its two libraries are installed with apt
+# where that is possible; what is missing is left out with a line that says so. IMMACULATE may name a program that is built already.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+
+adapters=tests/adapters
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+failures=0
+
+immaculate() {
+    if [ -n "${IMMACULATE:-}" ]; then "$IMMACULATE" "$@"; else cargo run --quiet --release --locked -- "$@"; fi
+}
+
+# expect STATUS LINE… -- ARGUMENTS OF check…: the exit status, and parts of the report, each of which must be there.
+expect() {
+    local status=$1 found=0 wanted=()
+    shift
+    while [ "$1" != "--" ]; do
+        wanted+=("$1")
+        shift
+    done
+    shift
+    immaculate check "$@" >"$work/report" 2>&1 || found=$?
+    tr -s ' \n' ' ' <"$work/report" >"$work/words" # sentences are broken into lines
+    local complaint=""
+    [ "$found" -eq "$status" ] || complaint="exit status $found where $status is expected"
+    for part in "${wanted[@]}"; do
+        grep -qF -- "$part" "$work/words" || complaint="$complaint${complaint:+; }no \"$part\""
+    done
+    if [ -z "$complaint" ]; then
+        echo "as expected  check $*"
+    else
+        echo "NOT AS EXPECTED  check $*: $complaint"
+        cat "$work/report"
+        failures=$((failures + 1))
+    fi
+}
+
+left_out() {
+    echo "LEFT OUT  $1"
+}
+
+# install COMMAND-OR-FILE PACKAGE…: whether it is there, or can be installed.
+install() {
+    local needed=$1
+    shift
+    is_there "$needed" && return 0
+    local apt=(apt-get)
+    [ "$(id -u)" -eq 0 ] || apt=(sudo -n apt-get)
+    "${apt[@]}" update >/dev/null 2>&1 || true
+    DEBIAN_FRONTEND=noninteractive "${apt[@]}" install -y --no-install-recommends "$@" >/dev/null 2>&1 || true
+    is_there "$needed"
+}
+
+is_there() {
+    case $1 in
+    /*) [ -e "$1" ] ;;
+    *) command -v "$1" >/dev/null 2>&1 ;;
+    esac
+}
+
+python_filters() {
+    local python="$work/venv/bin/python"
+    if ! python3 -m venv "$work/venv" || ! "$python" -m pip install --quiet numpy filterpy==2.0.0; then
+        left_out "numpy and FilterPy: no virtual environment, or no PyPI"
+        return
+    fi
+    local numpy=("$python" "$adapters/numpy_imm.py")
+
+    expect 0 "RIGHT numpy example, double precision" -- -- "${numpy[@]}"
+    expect 0 "RIGHT numpy example, single precision" -- -- "${numpy[@]}" --single
+    for form in joseph inverse information; do
+        expect 0 "RIGHT numpy example, double precision" -- -- "${numpy[@]}" --form "$form"
+    done
+    for convention in angle_mean=vector square_root=symmetric square_root=cholesky-upper first_step=unmixed log_likelihood=without-two-pi; do
+        expect 0 "RIGHT numpy example, double precision" -- -- "${numpy[@]}" --convention "$convention"
+    done
+    for level in posteriors combined; do
+        expect 0 "RIGHT numpy example, double precision" "Never shown:" -- -- "${numpy[@]}" --show "$level"
+    done
+
+    # A mistake, and the equation in which it is made.
+    while read -r mistake quantity; do
+        expect 1 "FAULT $quantity" "MOST LIKELY" "($mistake; mistake)" -- -- "${numpy[@]}" --mistake "$mistake"
+    done <<'END'
+transition-transposed predicted_mode_probabilities
+transition-transposed-in-mixing mixing_probabilities
+mixing-skipped mixed.mean
+mixed-spread-omitted mixed.covariance
+covariances-not-mixed mixed.covariance
+process-noise-omitted predicted.covariance
+process-noise-doubled predicted.covariance
+points-not-drawn-afresh innovation_covariance
+points-from-rows-of-the-root predicted_measurement
+cubature-5-weight-13 predicted.mean
+measurement-noise-omitted innovation_covariance
+measurement-noise-doubled innovation_covariance
+innovation-not-wrapped innovation
+measurement-of-the-mean predicted_measurement
+gain-of-mixed-covariance gain
+covariance-not-updated updated.covariance
+determinant-omitted log_likelihood
+exponent-without-half log_likelihood
+likelihood-of-updated-residual log_likelihood
+updated-with-old-probabilities mode_probabilities
+prior-omitted mode_probabilities
+probabilities-not-advanced mode_probabilities
+last-likelihood-used-again mode_probabilities
+combined-spread-omitted combined.covariance
+combined-with-predicted-probabilities combined.mean
+END
+    expect 1 "MOST LIKELY, TWO AT ONCE" "(mixed-spread-omitted; mistake)" "(determinant-omitted; mistake)" \
+        -- -- "${numpy[@]}" --mistake mixed-spread-omitted --mistake determinant-omitted
+
+    filterpy "$python" "$adapters/filterpy_imm.py"
+}
+
+# What is found in FilterPy 2.0.0.
+filterpy() {
+    expect 1 -- -- "$@"
+}
+
+octave_filter() {
+    if ! install octave-cli octave; then
+        left_out "Octave: not installed"
+        return
+    fi
+    immaculate cases copy "$work/problems" >/dev/null
+    for form in json csv; do
+        octave-cli --no-init-file --eval "addpath('$adapters'); octave_imm('$work/problems', '$work/$form', '$form')" >"$work/octave" 2>&1 ||
+            cat "$work/octave"
+        expect 0 "RIGHT Octave example, double precision" -- --answers "$work/$form"
+    done
+}
+
+cpp_filter() {
+    if ! install g++ g++ || ! install /usr/include/nlohmann/json.hpp nlohmann-json3-dev || ! install /usr/include/eigen3 libeigen3-dev; then
+        left_out "C++: no compiler, or not its libraries"
+        return
+    fi
+    g++ -std=c++17 -O2 -Wall -Wextra -Werror -I /usr/include/eigen3 -o "$work/imm" "$adapters/cpp/main.cpp"
+    expect 0 "RIGHT C++ example, double precision" -- -- "$work/imm"
+}
+
+python_filters
+octave_filter
+cpp_filter
+[ "$failures" -eq 0 ] || {
+    echo "$failures verdicts are not as expected"
+    exit 1
+}
