@@ -4,15 +4,16 @@
 %   octave --no-gui --eval "addpath('tests/adapters'); octave_imm('problems', 'answers')"
 %   immaculate check --answers answers
 %
-% octave_imm(problems, answers) reads each problem of the folder `problems` and writes `answers/ID.json`;
-% octave_imm(problems, answers, 'csv') writes `answers/ID.csv`, the long form with one number a line.
+% octave_imm(problems, answers) reads each problem of the folder `problems` and writes `answers/ID.csv`, the long
+% form with one number a line; octave_imm(problems, answers, 'json') writes `answers/ID.json`. In Octave prefer the
+% CSV: its jsonencode writes numbers below 2.2e-16 as 0, small probabilities too.
 %
 % The first half is the adapter: files, and the mapping between the JSON and the filter's arguments. To
 % check a filter of your own, keep it and change the lines marked CHANGE HERE. The second half is the filter.
 
 function octave_imm(problems, answers, form)
   if nargin < 3
-    form = 'json';
+    form = 'csv';
   end
   if ~exist(answers, 'dir')
     mkdir(answers);
@@ -72,7 +73,7 @@ function steps = run(problem)
   end
 end
 
-% jsonencode has 15 digits in Octave; the long CSV has them all.
+% The long form
 function write_csv(name, id, steps)
   file = fopen(name, 'w');
   fprintf(file, 'id,step,mode,quantity,row,column,value\n');
