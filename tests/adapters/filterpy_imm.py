@@ -15,6 +15,9 @@ is the one of FilterPy's documentation.
                         alpha = 1 and beta = 0, MerweScaledSigmaPoints elsewhere
     cubature-3          kalman.CubatureKalmanFilter
     no detection        update(None)
+
+With --transition-as-documented the transition matrix is given as IMMEstimator's documentation says,
+and not as its code reads it.
 """
 
 import json
@@ -119,9 +122,10 @@ def imm_of(problem, filters):
 
     Its documentation has M[i, j] from j to i; its code has it from i to j, and that is used.
     """
-    return IMMEstimator(
-        filters, problem["initial"]["mode_probabilities"], np.array(problem["transition"])
-    )
+    transition = np.array(problem["transition"])
+    if "--transition-as-documented" in sys.argv:
+        transition = transition.T
+    return IMMEstimator(filters, problem["initial"]["mode_probabilities"], transition)
 
 
 def filter_of(problem, j):
