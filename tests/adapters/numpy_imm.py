@@ -79,7 +79,7 @@ def run(problem, options):
             z = None if entry["z"] is None else np.array(entry["z"], arguments["number"])
             step = imm.step(z)  # CHANGE HERE: one step of your filter
             answer["steps"].append(shown(entry["step"], step, options.show))
-    except (np.linalg.LinAlgError, FloatingPointError) as error:
+    except (np.linalg.LinAlgError, ValueError) as error:
         answer["error"] = f"step {len(answer['steps']) + 1}: {error}"
     return answer
 
@@ -601,11 +601,10 @@ class Imm:
         )
 
     def log_likelihood(self, mode):
-        """ln N(innovation; 0, S), by the Cholesky factor of S."""
-        root = np.linalg.cholesky(mode.innovation_covariance)
-        normalised = np.linalg.solve(root, mode.innovation)
-        log_density = -normalised @ normalised / 2 - np.sum(np.log(np.diag(root)))
-        return log_density - self.two_pi(mode)
+        """ln N(innovation; 0, S)."""
+        s, residual = mode.innovation_covariance, mode.innovation
+        _, log_determinant = np.linalg.slogdet(s)
+        return -(residual @ np.linalg.solve(s, residual) + log_determinant) / 2 - self.two_pi(mode)
 
     def two_pi(self, mode):
         """(m/2) ln 2 pi, unless the convention is to leave it out."""

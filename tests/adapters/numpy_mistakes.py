@@ -124,8 +124,22 @@ class MeasurementOfTheMean:
     """The measurement of the mean for the mean of the measurements."""
 
     def measure(self, mode):
+        full = self.measurement
+        self.measurement = MeasuredMean(full)
         super().measure(mode)
-        mode.predicted_measurement = self.measurement.of_states(mode.predicted[0][None, :])[0]
+        self.measurement = full
+
+
+class MeasuredMean:
+    """A measurement whose mean is that of the centre."""
+
+    def __init__(self, measurement):
+        self.matrix = measurement.matrix
+        self.of_states = measurement.of_states
+        self.difference = measurement.difference
+
+    def mean(self, weights, values, centre):
+        return centre
 
 
 class GainOfMixedCovariance:
@@ -166,14 +180,13 @@ class ExponentWithoutHalf:
 
 
 class LikelihoodOfUpdatedResidual:
-    """The residual after the update in place of the innovation; a Kalman filter's mistake."""
+    """The residual after the update in place of the innovation."""
 
     def log_likelihood(self, mode):
-        if self.rule is not None:
-            return super().log_likelihood(mode)
         s = mode.innovation_covariance
         z = mode.innovation + mode.predicted_measurement
-        residual = z - self.measurement.matrix @ mode.updated[0]
+        measured = self.measurement.of_states(mode.updated[0][None, :])[0]
+        residual = self.measurement.difference(z, measured)
         square = residual @ np.linalg.solve(s, residual)
         return -(square + np.log(np.linalg.det(s))) / 2 - self.two_pi(mode)
 
