@@ -11,6 +11,12 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 failures=0
 
+# The cases that are short enough for a filter with a mistake not to run away.
+short=()
+for beginning in mixing likelihood combination update rule.cubature-5 step.n step.c step.s step.u steps chain.not missed wrap; do
+    short+=(--case "$beginning")
+done
+
 immaculate() {
     if [ -n "${IMMACULATE:-}" ]; then "$IMMACULATE" "$@"; else cargo run --quiet --release --locked -- "$@"; fi
 }
@@ -24,6 +30,9 @@ expect() {
         shift
     done
     shift
+    local title="$*"
+    title=${title//"$work/"/}
+    title=${title//"${short[*]}"/(short cases)}
     immaculate check "$@" >"$work/report" 2>&1 || found=$?
     tr -s ' \n' ' ' <"$work/report" >"$work/words" # sentences are broken into lines
     local complaint=""
@@ -32,9 +41,9 @@ expect() {
         grep -qF -- "$part" "$work/words" || complaint="$complaint${complaint:+; }no \"$part\""
     done
     if [ -z "$complaint" ]; then
-        echo "as expected  check $*"
+        echo "as expected  check $title"
     else
-        echo "NOT AS EXPECTED  check $*: $complaint"
+        echo "NOT AS EXPECTED  check $title: $complaint"
         cat "$work/report"
         failures=$((failures + 1))
     fi
@@ -83,11 +92,7 @@ python_filters() {
         expect 0 "RIGHT numpy example, double precision" "Never shown:" -- -- "${numpy[@]}" --show "$level"
     done
 
-    # A mistake, and the equation in which it is made; on the short cases, where the filter does not run away.
-    local short=()
-    for beginning in mixing likelihood combination update rule.cubature-5 step.n step.c step.s step.u steps chain.not missed wrap; do
-        short+=(--case "$beginning")
-    done
+    # A mistake, and the equation in which it is made.
     while read -r mistake quantity; do
         expect 1 "FAULT $quantity" "MOST LIKELY" "($mistake; mistake)" -- "${short[@]}" -- "${numpy[@]}" --mistake "$mistake"
     done <<'END'
