@@ -241,7 +241,8 @@ impl Imm {
         let (inverse, determinant) = inverse(&mode.s);
         mode.gain = product(&mode.cross, &inverse);
         let correction = applied(&mode.gain, &mode.innovation);
-        let reduction = product(&mode.gain, &transposed(&mode.cross));
+        // Not K C', with which the antisymmetric part of rounding errors grows from step to step.
+        let reduction = product(&product(&mode.gain, &mode.s), &transposed(&mode.gain));
         mode.updated.x = x.iter().zip(correction).map(|(x, correction)| x + correction).collect();
         mode.updated.p = sum(p, &scaled(&reduction, -1.0));
         let weighted = applied(&inverse, &mode.innovation);
