@@ -206,7 +206,9 @@ impl Imm {
             });
         }
         if let Some(z) = z {
-            modes.iter_mut().for_each(|mode| self.update(mode, z));
+            for mode in &mut modes {
+                self.update(mode, z);
+            }
         }
         let probabilities = if z.is_some() {
             weighed(&predicted_probabilities, &modes)
