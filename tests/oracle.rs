@@ -193,15 +193,44 @@ fn two_mistakes_at_once_are_both_named() {
     let ids = ["steps.", "step.", "missed.", "wrap.", "update."].map(str::to_owned);
     for pair in pairs {
         let report = report_of(&pair, Level::Everything, &ids);
-        let Diagnosis::Two(found) = &report.diagnosis else {
+        let Diagnosis::Several(found) = &report.diagnosis else {
             panic!("{pair:?}: {:?}", report.diagnosis);
         };
-        let found: Vec<[&str; 2]> = found.iter().map(|two| two.map(|variant| variant.id.as_str())).collect();
+        let found: Vec<Vec<&str>> = found
+            .iter()
+            .map(|member| member.iter().map(|variant| variant.id.as_str()).collect())
+            .collect();
         let mut expected = pair;
-        let order = |id: &str| catalogue().iter().position(|variant| variant.id == id);
-        expected.sort_by_key(|id| order(id));
-        assert_eq!(found, [expected]);
+        expected.sort_by_key(|id| variant::find(id).map(|variant| variant.quantity));
+        assert_eq!(found, expected.map(|id| vec![id]));
     }
+}
+
+#[test]
+fn four_mistakes_at_once_are_all_named() {
+    let four = [
+        "transition-transposed",
+        "mixed-spread-omitted",
+        "measurement-noise-doubled",
+        "determinant-omitted",
+    ];
+    let ids = ["steps.", "step.", "update."].map(str::to_owned);
+    let Diagnosis::Several(found) = report_of(&four, Level::Everything, &ids).diagnosis else {
+        panic!("not several");
+    };
+    let found: Vec<&str> = found.iter().flatten().map(|variant| variant.id.as_str()).collect();
+    assert_eq!(found, four);
+}
+
+#[test]
+fn where_less_is_shown_a_pair_is_found_by_trying_all() {
+    let pair = ["mixed-spread-omitted", "measurement-noise-doubled"];
+    let ids = ["steps.", "step.n4"].map(str::to_owned);
+    let Diagnosis::Pairs(found) = report_of(&pair, Level::Posteriors, &ids).diagnosis else {
+        panic!("not a pair");
+    };
+    let found: Vec<[&str; 2]> = found.iter().map(|two| two.map(|variant| variant.id.as_str())).collect();
+    assert!(found.contains(&pair), "{found:?}");
 }
 
 #[test]

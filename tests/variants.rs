@@ -9,6 +9,7 @@ use immaculate::imm::{Equations, Initial, Problem, Quantity};
 use immaculate::model::motion::Mode;
 use immaculate::model::{Measurement, PolarComponent};
 use immaculate::number::Enclosure;
+use immaculate::oracle::run::Triangle;
 use immaculate::oracle::setup::Setup;
 use immaculate::oracle::trace::Trace;
 use immaculate::oracle::variant::{Kind, Variant, apply, catalogue, find, read};
@@ -206,7 +207,10 @@ fn two_variants_compose() {
     for (first, second) in pairs {
         let both = varied(linear(3), &[first, second]);
         let shown = both.run().values;
-        let unexplained = changes(&shown, &linear(3).run_along(&shown, |value| value).values);
+        let unexplained = changes(
+            &shown,
+            &linear(3).run_along(&shown, |value| value, Triangle::Lower).values,
+        );
         let named = [first, second].map(|id| find(id).expect("it is in the catalogue").quantity);
         for quantity in named {
             assert!(unexplained.contains(&quantity), "{first} and {second}: {quantity:?}");
@@ -215,10 +219,12 @@ fn two_variants_compose() {
         assert_eq!(other_way, shown, "{first} and {second} in the other order");
         // Each alone does not explain what both did.
         for id in [first, second] {
-            let alone = varied(linear(3), &[id]).run_along(&shown, |value| value).values;
+            let alone = varied(linear(3), &[id])
+                .run_along(&shown, |value| value, Triangle::Lower)
+                .values;
             assert!(!changes(&shown, &alone).is_empty(), "{id}");
         }
-        let explained = both.run_along(&shown, |value| value).values;
+        let explained = both.run_along(&shown, |value| value, Triangle::Lower).values;
         assert!(changes(&shown, &explained).is_empty(), "{first} and {second}");
     }
 }
@@ -304,9 +310,21 @@ impl Scene {
 
     fn along(&self, ids: &[&str], shown: &Trace) -> Trace {
         match self {
-            Self::Large(_, setup) => varied(setup.clone(), ids).run_along(shown, |value| value).values,
-            Self::Square(_, setup) => varied(setup.clone(), ids).run_along(shown, |value| value).values,
-            Self::Small(_, setup) => varied(setup.clone(), ids).run_along(shown, |value| value).values,
+            Self::Large(_, setup) => {
+                varied(setup.clone(), ids)
+                    .run_along(shown, |value| value, Triangle::Lower)
+                    .values
+            }
+            Self::Square(_, setup) => {
+                varied(setup.clone(), ids)
+                    .run_along(shown, |value| value, Triangle::Lower)
+                    .values
+            }
+            Self::Small(_, setup) => {
+                varied(setup.clone(), ids)
+                    .run_along(shown, |value| value, Triangle::Lower)
+                    .values
+            }
         }
     }
 

@@ -14,7 +14,7 @@ use std::time::Duration;
 
 #[derive(Args)]
 #[command(
-    after_help = "Exit status: 0 all right, 1 something is wrong, 2 the check could not be made.\n\n\
+    after_help = "Exit status: 0 all right, 1 something is wrong, 2 the check could not be made or nothing was judged.\n\n\
     The protocol and the file formats are in spec/formats.md; examples in several languages are in tests/adapters."
 )]
 pub struct Check {
@@ -79,8 +79,10 @@ pub fn run(arguments: &Check) -> Result<Done, Refusal> {
     } else {
         report::check::text(&report)
     };
-    Ok(Done {
-        text,
-        status: u8::from(report.is_wrong()),
-    })
+    let status = match (report.is_wrong(), report.is_empty()) {
+        (true, _) => 1,
+        (false, true) => 2,
+        (false, false) => 0,
+    };
+    Ok(Done { text, status })
 }

@@ -178,6 +178,11 @@ impl Quantity {
         }
     }
 
+    /// Whether it is a covariance, and so symmetric.
+    pub fn is_covariance(self) -> bool {
+        self.rank() == 2 && !matches!(self, CrossCovariance | Gain)
+    }
+
     /// What it is computed from, besides the problem and the measurement.
     pub fn inputs(self, has_detection: bool) -> &'static [Input] {
         match self {

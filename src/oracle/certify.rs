@@ -107,7 +107,7 @@ impl Work for Attempt<'_> {
         let scale = scales(&trace);
         let unit_roundoff = f64::EPSILON / 2.0;
         let in_doubles: Setup<f64, N, M> = problem.setup_in_doubles()?;
-        let noise = noise::spread(&trace, unit_roundoff, noise::RUNS, || in_doubles.perturbed().run());
+        let noise = noise::spread(&trace, unit_roundoff, noise::RUNS, |_| in_doubles.perturbed().run());
         Ok(Certified {
             trace,
             scale,

@@ -9,7 +9,7 @@ use super::invalid::Invalid;
 use super::judge::{self, Finding, Judged, Judgement, LIMIT, Reference};
 use super::subject::{Answer, Broken, ECHO, Precision, Ready, Subject};
 use super::trace::{Dimensions, Trace};
-use super::variant::{Kind, Variant, catalogue};
+use super::variant::{Variant, catalogue};
 use crate::imm::Quantity;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Mutex, PoisonError};
@@ -164,8 +164,18 @@ pub struct Report {
 impl Report {
     /// Whether all faults are those of a form or a convention, which are not wrong.
     pub fn is_excused(&self) -> bool {
-        matches!(&self.diagnosis, Diagnosis::One(variants)
-            if variants.iter().all(|variant| variant.kind != Kind::Mistake))
+        self.diagnosis.is_excuse()
+    }
+
+    /// Whether nothing could be judged at all.
+    pub fn is_empty(&self) -> bool {
+        let is_judged = |case: &CaseReport| {
+            !matches!(
+                case.outcome,
+                Outcome::Skipped { .. } | Outcome::CannotTell | Outcome::NothingShown
+            )
+        };
+        !self.cases.iter().any(is_judged)
     }
 
     /// Whether anything is wrong.
@@ -339,7 +349,8 @@ fn judge_answer(case: &Case, answer: Answer, ready: &Ready, conventions: &[&str]
         precision: ready.precision,
     }
     .judge(conventions)?;
-    summarise(&mut report, &judgement, error);
+    let is_drowned = error.is_some() && stops_where_noise_drowns(&shown, &reference);
+    summarise(&mut report, &judgement, error, is_drowned);
     report.judgement = Some(judgement);
     Ok((report, Some((shown, reference))))
 }
@@ -367,8 +378,22 @@ fn reference_of(
     Ok(reference)
 }
 
+/// Whether a program stopped in a step in which rounding in its precision is as large as a value: no program could be sure to go on.
+fn stops_where_noise_drowns(shown: &Trace, reference: &Reference) -> bool {
+    let is_there = |place: &(usize, Quantity, usize)| shown.get(place.0, place.1, place.2).is_some();
+    let last = shown
+        .all_places()
+        .filter(is_there)
+        .map(|place| place.0)
+        .max()
+        .unwrap_or(0);
+    let steps = last.max(1)..=(last + 1).min(shown.dimensions.steps);
+    let mut places = steps.flat_map(|step| shown.places(step));
+    places.any(|place| reference.is_drowned(place))
+}
+
 /// Outcome, counts and digits from the judged values.
-fn summarise(report: &mut CaseReport, judgement: &Judgement, error: Option<String>) {
+fn summarise(report: &mut CaseReport, judgement: &Judgement, error: Option<String>, is_drowned: bool) {
     let findings = || judgement.values.iter().map(|value| value.finding);
     let decided = |finding: &Finding| {
         matches!(
@@ -385,8 +410,10 @@ fn summarise(report: &mut CaseReport, judgement: &Judgement, error: Option<Strin
         .reduce(f64::min);
     report.outcome = if findings().any(|finding| matches!(finding, Finding::Fault | Finding::NotFinite)) {
         Outcome::Wrong
-    } else if let Some(reason) = error {
+    } else if let Some(reason) = error.filter(|_| !is_drowned) {
         Outcome::Stopped { reason }
+    } else if is_drowned {
+        Outcome::CannotTell
     } else if judgement.values.is_empty() {
         Outcome::NothingShown
     } else if report.judged == 0 {

@@ -1,20 +1,29 @@
-//! What was done: the variants of the catalogue, and pairs of them, that explain every shown value.
+//! What was done: the variants of the catalogue, alone or together, that explain every shown value.
 //!
 //! After this file the reader knows how a mistake gets its name. Each variant is run along the program's own values; the ones under
 //! which nothing is left unexplained, in the faulty cases and in the others, are named. Forms go before conventions, and these before
 //! mistakes: a filter that is right in other algebra is not called wrong.
+//!
+//! Where no variant explains all alone, equations are taken one after the other: every value is judged on the program's own inputs, so where
+//! enough is shown, mistakes in different equations are independent. Where too little is shown for that, all pairs are tried. Where only some
+//! filters of a program are wrong, they are taken by themselves.
 
 use super::invalid::Invalid;
 use super::judge::{Case, Place};
 use super::variant::{Kind, Variant, catalogue};
+use crate::imm::Quantity;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
+/// So many mistakes at once are looked for.
+const MOST: usize = 6;
+
 /// A case to be explained.
+#[derive(Clone)]
 pub struct Evidence<'a> {
     /// The case.
     pub case: Case<'a>,
-    /// The places that say nothing about variants: stale, not finite, drowned, or right against what its own inputs give.
+    /// The places that say nothing about variants: stale, drowned, or right against what its own inputs give.
     pub passed: BTreeSet<Place>,
     /// Whether the case has a fault.
     pub is_faulty: bool,
@@ -27,17 +36,37 @@ pub enum Diagnosis {
     Nothing,
     /// Each of these variants alone explains all; with what is shown they cannot be told apart.
     One(Vec<&'static Variant>),
+    /// These together explain all; each with those that cannot be told from it.
+    Several(Vec<Vec<&'static Variant>>),
     /// Each of these pairs explains all.
-    Two(Vec<[&'static Variant; 2]>),
-    /// Nothing in the catalogue explains all; the variants that explain most cases with a fault, and how many of how many.
+    Pairs(Vec<[&'static Variant; 2]>),
+    /// By filter, since what explains one does not explain the others.
+    ByFilter(Vec<(String, Diagnosis)>),
+    /// Nothing in the catalogue explains all.
     Unknown {
-        /// The best.
+        /// The variants that explain most faulty cases.
         best: Vec<&'static Variant>,
-        /// The number of faulty cases that each explains.
-        explained: usize,
+        /// The faulty cases that the first of them does not explain.
+        unexplained: Vec<String>,
         /// The number of faulty cases.
         of: usize,
     },
+}
+
+impl Diagnosis {
+    /// Whether all that was found is forms and conventions, which are not wrong.
+    pub fn is_excuse(&self) -> bool {
+        let is_no_mistake = |variant: &&Variant| variant.kind != Kind::Mistake;
+        match self {
+            Self::One(variants) => variants.iter().all(is_no_mistake),
+            Self::Several(members) => members.iter().flatten().all(is_no_mistake),
+            Self::Pairs(pairs) => pairs.iter().flatten().all(is_no_mistake),
+            Self::ByFilter(filters) => filters
+                .iter()
+                .all(|(_, of_filter)| matches!(of_filter, Self::Nothing) || of_filter.is_excuse()),
+            Self::Nothing | Self::Unknown { .. } => false,
+        }
+    }
 }
 
 /// Looks for the variants that explain the evidence, together with the declared conventions.
@@ -46,57 +75,223 @@ pub enum Diagnosis {
 ///
 /// [`Invalid`] for a problem that cannot be set up.
 pub fn diagnose(evidence: &[Evidence], conventions: &[&str]) -> Result<Diagnosis, Invalid> {
-    if evidence.iter().all(|evidence| !evidence.is_faulty) {
-        return Ok(Diagnosis::Nothing);
+    let search = Search::new(evidence, conventions);
+    if let Some(found) = search.quickly()? {
+        return Ok(found);
     }
-    // What fails fails early: faulty cases first, short ones before long ones.
-    let mut order: Vec<&Evidence> = evidence.iter().collect();
-    order.sort_by_key(|evidence| (!evidence.is_faulty, evidence.case.shown.count()));
-    let explains = |variants: &[&str]| -> Result<bool, Invalid> {
-        let all: Vec<&str> = conventions.iter().chain(variants).copied().collect();
-        for evidence in &order {
-            if !evidence.case.is_explained_by(&all, &evidence.passed)? {
+    let by_filter = by_filter(evidence, conventions)?;
+    let is_known = |(_, found): &(String, Diagnosis)| !matches!(found, Diagnosis::Unknown { .. });
+    if by_filter.len() > 1 && by_filter.iter().all(is_known) {
+        return Ok(Diagnosis::ByFilter(by_filter));
+    }
+    if let Some(found) = search.pairs()? {
+        return Ok(found);
+    }
+    if by_filter.len() > 1 && by_filter.iter().any(is_known) {
+        return Ok(Diagnosis::ByFilter(by_filter));
+    }
+    search.best()
+}
+
+/// The evidence filter by filter, as long as there are several and one is without fault or explained.
+fn by_filter(evidence: &[Evidence], conventions: &[&str]) -> Result<Vec<(String, Diagnosis)>, Invalid> {
+    let mut names: Vec<&str> = evidence
+        .iter()
+        .map(|evidence| evidence.case.problem.filter.name())
+        .collect();
+    names.sort_unstable();
+    names.dedup();
+    let mut found = Vec::new();
+    for name in names {
+        let of_filter = |evidence: &&Evidence| evidence.case.problem.filter.name() == name;
+        let own: Vec<Evidence> = evidence.iter().filter(of_filter).cloned().collect();
+        let search = Search::new(&own, conventions);
+        let diagnosis = match search.quickly()? {
+            Some(diagnosis) => diagnosis,
+            None => search.best()?,
+        };
+        found.push((name.to_owned(), diagnosis));
+    }
+    Ok(found)
+}
+
+/// A search over some evidence.
+struct Search<'a> {
+    /// What fails fails early: faulty cases first, short ones before long ones.
+    evidence: Vec<&'a Evidence<'a>>,
+    conventions: Vec<&'a str>,
+    candidates: Vec<&'static Variant>,
+}
+
+impl<'a> Search<'a> {
+    fn new(evidence: &'a [Evidence<'a>], conventions: &[&'a str]) -> Self {
+        let mut order: Vec<&Evidence> = evidence.iter().collect();
+        order.sort_by_key(|evidence| (!evidence.is_faulty, evidence.case.shown.count()));
+        let is_undeclared = |variant: &&Variant| !conventions.contains(&variant.id.as_str());
+        Self {
+            evidence: order,
+            conventions: conventions.to_vec(),
+            candidates: catalogue().iter().filter(is_undeclared).collect(),
+        }
+    }
+
+    /// The ids of the declared conventions and of variants.
+    fn ids(&self, variants: &[&'static Variant]) -> Vec<&'a str> {
+        let ids = variants.iter().map(|variant| variant.id.as_str());
+        self.conventions.iter().copied().chain(ids).collect()
+    }
+
+    /// Whether variants together explain every value of every case.
+    fn explains(&self, variants: &[&'static Variant]) -> Result<bool, Invalid> {
+        let ids = self.ids(variants);
+        for evidence in &self.evidence {
+            if !evidence.case.is_explained_by(&ids, &evidence.passed)? {
                 return Ok(false);
             }
         }
         Ok(true)
-    };
-    let candidates: Vec<&'static Variant> = catalogue()
-        .iter()
-        .filter(|variant| !conventions.contains(&variant.id.as_str()))
-        .collect();
-    let found: Result<Vec<bool>, Invalid> = candidates.par_iter().map(|variant| explains(&[&variant.id])).collect();
-    let found = chosen(&candidates, &found?);
-    if let Some(best) = gentlest(&found) {
-        return Ok(Diagnosis::One(best));
     }
-    let mut pairs = Vec::new();
-    for (index, first) in candidates.iter().enumerate() {
-        for second in &candidates[index + 1..] {
-            pairs.push([*first, *second]);
+
+    /// Whether variants together explain every value of one quantity.
+    fn explains_quantity(&self, variants: &[&'static Variant], quantity: Quantity) -> Result<bool, Invalid> {
+        let ids = self.ids(variants);
+        for evidence in &self.evidence {
+            if !evidence
+                .case
+                .is_quantity_explained_by(&ids, quantity, &evidence.passed)?
+            {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// One variant, or one for each faulty equation.
+    fn quickly(&self) -> Result<Option<Diagnosis>, Invalid> {
+        if self.evidence.iter().all(|evidence| !evidence.is_faulty) {
+            return Ok(Some(Diagnosis::Nothing));
+        }
+        let found = self.filter(&self.candidates, |variant| self.explains(&[variant]))?;
+        match gentlest(&found) {
+            Some(best) => Ok(Some(Diagnosis::One(best))),
+            None => self.equation_by_equation(),
         }
     }
-    // Where both exchange the same entry the last one counts, so the order may matter.
-    let found: Result<Vec<bool>, Invalid> = pairs
-        .par_iter()
-        .map(|[first, second]| {
-            let is_either = first.quantity == second.quantity;
-            Ok(explains(&[&first.id, &second.id])? || (is_either && explains(&[&second.id, &first.id])?))
-        })
-        .collect();
-    let found = chosen(&pairs, &found?);
-    if !found.is_empty() {
-        return Ok(Diagnosis::Two(without_needless_forms(found)));
-    }
-    best_of(&candidates, &order, conventions)
-}
 
-fn chosen<X: Copy>(all: &[X], found: &[bool]) -> Vec<X> {
-    all.iter()
-        .zip(found)
-        .filter(|(_, found)| **found)
-        .map(|(x, _)| *x)
-        .collect()
+    /// The candidates of which something is true, found on all cores.
+    fn filter(
+        &self,
+        candidates: &[&'static Variant],
+        is_true: impl Fn(&'static Variant) -> Result<bool, Invalid> + Sync,
+    ) -> Result<Vec<&'static Variant>, Invalid> {
+        let found: Result<Vec<bool>, Invalid> = candidates.par_iter().map(|variant| is_true(variant)).collect();
+        Ok(candidates
+            .iter()
+            .zip(found?)
+            .filter(|(_, found)| *found)
+            .map(|(variant, _)| *variant)
+            .collect())
+    }
+
+    /// For the first equation that is not explained, in the order of computation, a variant that is made in it; then for the next.
+    fn equation_by_equation(&self) -> Result<Option<Diagnosis>, Invalid> {
+        let mut chosen: Vec<&'static Variant> = Vec::new();
+        let mut alternatives: Vec<Vec<&'static Variant>> = Vec::new();
+        for quantity in Quantity::ALL {
+            if self.explains_quantity(&chosen, quantity)? {
+                continue;
+            }
+            let made_here: Vec<_> = self
+                .candidates
+                .iter()
+                .copied()
+                .filter(|variant| variant.quantity == quantity)
+                .collect();
+            let found = self.filter(&made_here, |variant| {
+                let mut with = chosen.clone();
+                with.push(variant);
+                self.explains_quantity(&with, quantity)
+            })?;
+            let Some(found) = gentlest(&found).filter(|_| chosen.len() < MOST) else {
+                return Ok(None);
+            };
+            chosen.push(found[0]);
+            alternatives.push(found);
+        }
+        // The first of each may fail where another explains the equations after it, too.
+        for place in 0..chosen.len() {
+            let others = self.filter(&alternatives[place], |variant| {
+                let mut with = chosen.clone();
+                with[place] = variant;
+                self.explains(&with)
+            })?;
+            let Some(first) = others.first() else {
+                return Ok(None);
+            };
+            chosen[place] = first;
+            alternatives[place] = others;
+        }
+        Ok((chosen.len() > 1).then_some(Diagnosis::Several(alternatives)))
+    }
+
+    /// All pairs.
+    fn pairs(&self) -> Result<Option<Diagnosis>, Invalid> {
+        let mut pairs = Vec::new();
+        for (index, first) in self.candidates.iter().enumerate() {
+            for second in &self.candidates[index + 1..] {
+                pairs.push([*first, *second]);
+            }
+        }
+        let found: Result<Vec<bool>, Invalid> = pairs
+            .par_iter()
+            .map(|[first, second]| {
+                // Where both exchange the same entry the last one counts, so the order may matter.
+                let is_either = first.quantity == second.quantity;
+                Ok(self.explains(&[first, second])? || (is_either && self.explains(&[second, first])?))
+            })
+            .collect();
+        let found: Vec<_> = pairs
+            .iter()
+            .zip(found?)
+            .filter(|(_, found)| *found)
+            .map(|(pair, _)| *pair)
+            .collect();
+        let mistakes = |pair: &[&Variant; 2]| pair.iter().filter(|variant| variant.kind == Kind::Mistake).count();
+        let Some(fewest) = found.iter().map(mistakes).min() else {
+            return Ok(None);
+        };
+        Ok(Some(Diagnosis::Pairs(
+            found.into_iter().filter(|pair| mistakes(pair) == fewest).collect(),
+        )))
+    }
+
+    /// The variants that explain most faulty cases, when nothing explains all.
+    fn best(&self) -> Result<Diagnosis, Invalid> {
+        let faulty: Vec<&&Evidence> = self.evidence.iter().filter(|evidence| evidence.is_faulty).collect();
+        let unexplained: Result<Vec<Vec<String>>, Invalid> = self
+            .candidates
+            .par_iter()
+            .map(|variant| {
+                let ids = self.ids(&[variant]);
+                let mut unexplained = Vec::new();
+                for evidence in &faulty {
+                    if !evidence.case.is_explained_by(&ids, &evidence.passed)? {
+                        unexplained.push(evidence.case.problem.id.clone());
+                    }
+                }
+                Ok(unexplained)
+            })
+            .collect();
+        let unexplained = unexplained?;
+        let fewest = unexplained.iter().map(Vec::len).min().unwrap_or(0);
+        let is_best = |index: &usize| unexplained[*index].len() == fewest && fewest < faulty.len();
+        let best: Vec<usize> = (0..self.candidates.len()).filter(is_best).collect();
+        Ok(Diagnosis::Unknown {
+            best: best.iter().map(|&index| self.candidates[index]).collect(),
+            unexplained: best.first().map_or_else(Vec::new, |&index| unexplained[index].clone()),
+            of: faulty.len(),
+        })
+    }
 }
 
 /// The variants of the gentlest kind among those found.
@@ -107,40 +302,4 @@ fn gentlest(found: &[&'static Variant]) -> Option<Vec<&'static Variant>> {
             let of_kind: Vec<_> = found.iter().copied().filter(|variant| variant.kind == kind).collect();
             (!of_kind.is_empty()).then_some(of_kind)
         })
-}
-
-/// Pairs with the fewest mistakes.
-fn without_needless_forms(found: Vec<[&'static Variant; 2]>) -> Vec<[&'static Variant; 2]> {
-    let mistakes = |pair: &[&Variant; 2]| pair.iter().filter(|variant| variant.kind == Kind::Mistake).count();
-    let fewest = found.iter().map(mistakes).min().unwrap_or(0);
-    found.into_iter().filter(|pair| mistakes(pair) == fewest).collect()
-}
-
-/// The variants that explain most faulty cases, when none explains all.
-fn best_of(
-    candidates: &[&'static Variant],
-    evidence: &[&Evidence],
-    conventions: &[&str],
-) -> Result<Diagnosis, Invalid> {
-    let faulty: Vec<&&Evidence> = evidence.iter().filter(|evidence| evidence.is_faulty).collect();
-    let counts: Result<Vec<usize>, Invalid> = candidates
-        .par_iter()
-        .map(|variant| {
-            let mut all = conventions.to_vec();
-            all.push(&variant.id);
-            let mut count = 0;
-            for evidence in &faulty {
-                count += usize::from(evidence.case.is_explained_by(&all, &evidence.passed)?);
-            }
-            Ok(count)
-        })
-        .collect();
-    let counts = counts?;
-    let most = counts.iter().copied().max().unwrap_or(0);
-    let is_best: Vec<bool> = counts.iter().map(|&count| count == most && most > 0).collect();
-    Ok(Diagnosis::Unknown {
-        best: chosen(candidates, &is_best),
-        explained: most,
-        of: faulty.len(),
-    })
 }

@@ -11,6 +11,7 @@
 use super::invalid::Invalid;
 use super::noise;
 use super::problem::ProblemFile;
+use super::run::Triangle;
 use super::scale::scales;
 use super::setup::Setup;
 use super::shape::{self, Work};
@@ -151,17 +152,24 @@ impl Work for Expect<'_> {
             variant::apply(id, &mut setup);
         }
         let centre = match self.shown {
-            Some(shown) => setup.run_along(shown, |value| value),
+            Some(shown) => setup.run_along(shown, |value| value, Triangle::Lower),
             None => setup.run(),
         };
-        let noise = noise::spread(&centre.values, self.precision.unit_roundoff(), self.runs, || {
+        let noise = noise::spread(&centre.values, self.precision.unit_roundoff(), self.runs, |number| {
             // The inputs are perturbed, too, so each run has a problem of its own.
             let mut setup = own.perturbed();
             for id in self.variants {
                 variant::apply(id, &mut setup);
             }
             match self.shown {
-                Some(shown) => setup.run_along(shown, RandomRounding::input),
+                Some(shown) => {
+                    let triangle = if number % 2 == 0 {
+                        Triangle::Lower
+                    } else {
+                        Triangle::Upper
+                    };
+                    setup.run_along(shown, RandomRounding::input, triangle)
+                }
                 None => setup.run(),
             }
         });
@@ -198,9 +206,26 @@ impl Reference {
     }
 }
 
+impl Reference {
+    /// Whether the noise of a value is as large as its unit.
+    pub fn is_drowned(&self, place: Place) -> bool {
+        is_drowned(place, &self.noise, &self.scale)
+    }
+}
+
+/// Whether a noise is as large as the unit of its value.
+fn is_drowned((step, quantity, mode): Place, noise: &Trace, scale: &Trace) -> bool {
+    let pair = noise.get(step, quantity, mode).zip(scale.get(step, quantity, mode));
+    pair.is_some_and(|(noise, scale)| {
+        let mut numbers = noise.iter().zip(scale);
+        numbers.any(|(noise, scale)| LIMIT * noise > *scale || noise.is_nan())
+    })
+}
+
 /// The error of numbers against expected ones: the greatest in rounding noise, and where.
 ///
-/// The noise of a number counts as at least a unit roundoff of its scale: what is smaller means nothing.
+/// A quantity has one noise, in units of scale: the greatest of its numbers', and at least a unit roundoff. A number that happens to be
+/// spared, because it is zero by structure or its errors cancel, is not spared in other algebra.
 fn compare(
     place: Place,
     shown: &[f64],
@@ -217,17 +242,22 @@ fn compare(
         ratio: -1.0,
         size: 0.0,
     };
+    let noise = noise
+        .iter()
+        .zip(scale)
+        .map(|(noise, scale)| noise / scale)
+        .fold(unit, f64::max);
     for index in 0..shown.len() {
         let mut error = (shown[index] - expected[index]).abs();
         if turn(place, index) {
             let turns = (error / (2.0 * std::f64::consts::PI)).round();
             error = (error - turns * 2.0 * std::f64::consts::PI).abs();
         }
-        let least = unit * scale[index].max(expected[index].abs());
+        let least = unit * expected[index].abs();
         let ratio = if error == 0.0 {
             0.0
         } else {
-            error / noise[index].max(least)
+            error / (noise * scale[index]).max(least)
         };
         // A value that should not be a number is not near any number.
         let ratio = if ratio.is_nan() { f64::INFINITY } else { ratio };
@@ -245,6 +275,7 @@ fn compare(
 }
 
 /// What is compared with what.
+#[derive(Clone, Copy)]
 pub struct Case<'a> {
     /// The problem.
     pub problem: &'a ProblemFile,
@@ -276,19 +307,6 @@ impl Case<'_> {
         ))
     }
 
-    /// Whether the noise of a value is as large as its unit.
-    fn is_drowned(&self, place: Place, noise: &Trace) -> bool {
-        let (step, quantity, mode) = place;
-        let noise = noise.get(step, quantity, mode);
-        let scale = self.reference.scale.get(step, quantity, mode);
-        noise.zip(scale).is_some_and(|(noise, scale)| {
-            noise
-                .iter()
-                .zip(scale)
-                .any(|(noise, scale)| LIMIT * noise > *scale || noise.is_nan())
-        })
-    }
-
     /// Judges all shown values.
     ///
     /// # Errors
@@ -310,9 +328,17 @@ impl Case<'_> {
             let is_inherited = against_own.is_some_and(|error| error.ratio <= LIMIT);
             let finding = if self.reference.trace.get(step, quantity, mode).is_none() {
                 Finding::Stale
-            } else if shown.iter().any(|value| !value.is_finite()) {
-                Finding::NotFinite
-            } else if self.is_drowned(place, &self.reference.noise) && (is_right || self.is_drowned(place, &own.noise))
+            } else if !is_finite(Some(shown)) {
+                let is_inherited = shown_inputs(self.problem, self.shown, place)
+                    .into_iter()
+                    .any(|(step, input, mode)| !is_finite(self.shown.get(step, input, mode)));
+                if is_inherited {
+                    Finding::Propagated
+                } else {
+                    Finding::NotFinite
+                }
+            } else if self.reference.is_drowned(place)
+                && (is_right || is_drowned(place, &own.noise, &self.reference.scale))
             {
                 Finding::CannotTell
             } else if is_right {
@@ -350,18 +376,38 @@ impl Case<'_> {
     ///
     /// [`Invalid`] for a problem that cannot be set up.
     pub fn is_explained_by(&self, variants: &[&str], passed: &BTreeSet<Place>) -> Result<bool, Invalid> {
+        let is_asked = |place: &Place| !passed.contains(place);
         // Most variants are far off, which two runs show: their spread is hardly ever a thousandth of what eight would give.
         const FAR: f64 = 1e6;
-        Ok(self.is_within(FAR, 2, variants, passed)? && self.is_within(LIMIT, noise::RUNS, variants, passed)?)
+        Ok(self.is_within(FAR, 2, variants, &is_asked)? && self.is_within(LIMIT, noise::RUNS, variants, &is_asked)?)
     }
 
-    fn is_within(&self, limit: f64, runs: u64, variants: &[&str], passed: &BTreeSet<Place>) -> Result<bool, Invalid> {
+    /// Whether the equations with these variants explain all shown values of one quantity.
+    ///
+    /// # Errors
+    ///
+    /// [`Invalid`] for a problem that cannot be set up.
+    pub fn is_quantity_explained_by(
+        &self,
+        variants: &[&str],
+        quantity: Quantity,
+        passed: &BTreeSet<Place>,
+    ) -> Result<bool, Invalid> {
+        let is_asked = |place: &Place| place.1 == quantity && !passed.contains(place);
+        self.is_within(LIMIT, noise::RUNS, variants, &is_asked)
+    }
+
+    fn is_within(
+        &self,
+        limit: f64,
+        runs: u64,
+        variants: &[&str],
+        is_asked: &dyn Fn(&Place) -> bool,
+    ) -> Result<bool, Invalid> {
         let own = expect(self.problem, variants, Some(self.shown), self.precision, runs)?;
         let is_shown = |place: &Place| self.shown.get(place.0, place.1, place.2).is_some();
         let is_within = |place: Place| {
             let (step, quantity, mode) = place;
-            let is_finite =
-                |values: Option<&Vec<f64>>| values.is_some_and(|values| values.iter().all(|value| value.is_finite()));
             if !is_finite(self.shown.get(step, quantity, mode)) {
                 // What is not finite is explained by equations that have no answer either.
                 return !is_finite(own.values.get(step, quantity, mode));
@@ -372,13 +418,18 @@ impl Case<'_> {
         let mut places = self
             .shown
             .all_places()
-            .filter(|place| is_shown(place) && !passed.contains(place));
+            .filter(|place| is_shown(place) && is_asked(place));
         Ok(places.all(is_within))
     }
 }
 
-/// The hidden values that a shown one depends on, back to the last shown ones.
-fn hidden_inputs(problem: &ProblemFile, shown: &Trace, place: Place) -> Vec<Place> {
+/// Whether there are values, and all of them are finite.
+fn is_finite(values: Option<&Vec<f64>>) -> bool {
+    values.is_some_and(|values| values.iter().all(|value| value.is_finite()))
+}
+
+/// The values that one depends on: those between it and the last shown ones are hidden, and these are shown.
+fn inputs(problem: &ProblemFile, shown: &Trace, place: Place) -> (BTreeSet<Place>, BTreeSet<Place>) {
     let r = shown.dimensions.r;
     let has_detection = |step: usize| {
         problem
@@ -386,7 +437,7 @@ fn hidden_inputs(problem: &ProblemFile, shown: &Trace, place: Place) -> Vec<Plac
             .get(step - 1)
             .is_some_and(|entry| entry.z.is_some())
     };
-    let mut found = BTreeSet::new();
+    let (mut hidden, mut last_shown) = (BTreeSet::new(), BTreeSet::new());
     let mut open = vec![place];
     while let Some((step, quantity, mode)) = open.pop() {
         for input in quantity.inputs(has_detection(step)) {
@@ -402,11 +453,23 @@ fn hidden_inputs(problem: &ProblemFile, shown: &Trace, place: Place) -> Vec<Plac
             };
             for mode in modes {
                 let next = (step, input, mode);
-                if shown.get(step, input, mode).is_none() && found.insert(next) {
+                if shown.get(step, input, mode).is_some() {
+                    last_shown.insert(next);
+                } else if hidden.insert(next) {
                     open.push(next);
                 }
             }
         }
     }
-    found.into_iter().collect()
+    (hidden, last_shown)
+}
+
+/// The hidden values that a shown one depends on, back to the last shown ones.
+fn hidden_inputs(problem: &ProblemFile, shown: &Trace, place: Place) -> Vec<Place> {
+    inputs(problem, shown, place).0.into_iter().collect()
+}
+
+/// The last shown values that a shown one depends on.
+fn shown_inputs(problem: &ProblemFile, shown: &Trace, place: Place) -> BTreeSet<Place> {
+    inputs(problem, shown, place).1
 }

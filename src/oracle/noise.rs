@@ -14,12 +14,12 @@ pub const RUNS: u64 = 8;
 
 /// The greatest deviation of any of the runs from the centre, for each number; infinite where a run could not be computed.
 ///
-/// `run` makes one run with random rounding; it is made `runs` times.
-pub fn spread(centre: &Trace, unit_roundoff: f64, runs: u64, run: impl Fn() -> Computed<RandomRounding>) -> Trace {
+/// `run` makes one run with random rounding, and is told its number; it is made `runs` times.
+pub fn spread(centre: &Trace, unit_roundoff: f64, runs: u64, run: impl Fn(u64) -> Computed<RandomRounding>) -> Trace {
     let mut spread = centre.map(|_, values| vec![0.0_f64; values.len()]);
     for seed in 0..runs {
         let sample = RandomRounding::with(unit_roundoff, seed, || {
-            run()
+            run(seed)
                 .values
                 .map(|_, values| values.iter().map(|value| value.output()).collect::<Vec<_>>())
         });

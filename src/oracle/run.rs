@@ -26,6 +26,17 @@ struct Exchange<'a, T> {
     computed: &'a mut Table<Vec<T>>,
     shown: Option<&'a Trace>,
     number: fn(f64) -> T,
+    triangle: Triangle,
+}
+
+/// Which triangle of a program's covariances is read. They are symmetric up to rounding, or should be; how far the triangles are apart is part
+/// of the rounding noise.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Triangle {
+    /// The lower one, which is the one that the equations read.
+    Lower,
+    /// The upper one.
+    Upper,
 }
 
 impl<T: Real, const N: usize, const M: usize> Observer<T, N, M> for Exchange<'_, T> {
@@ -33,10 +44,36 @@ impl<T: Real, const N: usize, const M: usize> Observer<T, N, M> for Exchange<'_,
         let shown = self.shown.and_then(|shown| shown.get(now.step, quantity, j));
         self.computed.set(now.step, quantity, j, now.values(quantity, j));
         if let Some(shown) = shown.filter(|values| values.iter().all(|value| value.is_finite())) {
-            let own: Vec<T> = shown.iter().map(|&value| (self.number)(value)).collect();
-            now.replace(quantity, j, &own);
+            now.replace(
+                quantity,
+                j,
+                &own_values::<T, N>(quantity, shown, self.number, self.triangle),
+            );
         }
     }
+}
+
+/// Shown values in the number system; covariances by rows, or by columns where their upper triangle is to be read.
+fn own_values<T: Real, const N: usize>(
+    quantity: Quantity,
+    shown: &[f64],
+    number: fn(f64) -> T,
+    triangle: Triangle,
+) -> Vec<T> {
+    let size = match quantity {
+        Quantity::InnovationCovariance => shown.len().isqrt(),
+        _ if quantity.is_covariance() => N,
+        _ => 0,
+    };
+    let is_turned = triangle == Triangle::Upper && size > 0;
+    let place = |index: usize| {
+        if is_turned {
+            index % size * size + index / size
+        } else {
+            index
+        }
+    };
+    (0..shown.len()).map(|index| number(shown[place(index)])).collect()
 }
 
 impl<T: Real, const N: usize, const M: usize> Setup<T, N, M> {
@@ -52,15 +89,15 @@ impl<T: Real, const N: usize, const M: usize> Setup<T, N, M> {
 
     /// Runs the problem.
     pub fn run(&self) -> Computed<T> {
-        self.exchange(None, |_| T::undecided())
+        self.exchange(None, |_| T::undecided(), Triangle::Lower)
     }
 
     /// Runs the problem along the values that another program shows, which `number` puts into this number system.
-    pub fn run_along(&self, shown: &Trace, number: fn(f64) -> T) -> Computed<T> {
-        self.exchange(Some(shown), number)
+    pub fn run_along(&self, shown: &Trace, number: fn(f64) -> T, triangle: Triangle) -> Computed<T> {
+        self.exchange(Some(shown), number, triangle)
     }
 
-    fn exchange(&self, shown: Option<&Trace>, number: fn(f64) -> T) -> Computed<T> {
+    fn exchange(&self, shown: Option<&Trace>, number: fn(f64) -> T, triangle: Triangle) -> Computed<T> {
         let mut filter = self.filter();
         let mut values = Table::empty(self.dimensions());
         let mut failures = Vec::new();
@@ -69,6 +106,7 @@ impl<T: Real, const N: usize, const M: usize> Setup<T, N, M> {
                 computed: &mut values,
                 shown,
                 number,
+                triangle,
             };
             let Err(failure) = filter.step_observed(measurement.as_ref(), &mut exchange) else {
                 continue;

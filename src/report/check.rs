@@ -8,6 +8,7 @@ use crate::imm::Quantity;
 use crate::oracle::check::{CaseReport, Outcome, Report};
 use crate::oracle::diagnose::Diagnosis;
 use crate::oracle::judge::{Finding, Judged};
+use crate::oracle::subject::Broken;
 use crate::oracle::variant::{Kind, Variant};
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -16,9 +17,7 @@ use std::fmt::Write;
 pub fn text(report: &Report) -> String {
     let mut text = cases(report);
     text.push_str(&faults(report));
-    for failure in failures(report) {
-        text.push_str(&wrapped(&failure, "  "));
-    }
+    text.push_str(&failures(report));
     text.push_str(&diagnosis(&report.diagnosis));
     for remark in &report.remarks {
         text.push_str(&wrapped(&format!("REMARK  {remark}"), ""));
@@ -40,6 +39,7 @@ fn words(outcome: &Outcome) -> &'static str {
         Outcome::Skipped { .. } => "skipped",
         Outcome::NothingShown => "NOTHING SHOWN",
         Outcome::Stopped { .. } => "STOPPED",
+        Outcome::Broken(Broken::Invalid(_) | Broken::Garbage { .. }) => "UNREADABLE",
         Outcome::Broken(_) => "NO ANSWER",
     }
 }
@@ -74,7 +74,13 @@ fn cases(report: &Report) -> String {
     let mut text = format!("{table}\n");
     for case in &report.cases {
         if let Some(reason) = reason(&case.outcome) {
-            text.push_str(&wrapped(&format!("{}: {reason}", case.id), "  "));
+            // What a program writes keeps its lines.
+            let mut lines = reason.lines();
+            let first = lines.next().unwrap_or_default();
+            text.push_str(&wrapped(&format!("{}: {first}", case.id), "  "));
+            for line in lines {
+                let _ = writeln!(text, "    {line}");
+            }
         }
     }
     text
@@ -102,11 +108,12 @@ fn faults(report: &Report) -> String {
             text.push_str(&wrapped(&sentence, "  "));
         }
         if faults.len() > 1 {
-            let others = cases.len() - 1;
-            let sentence = format!(
-                "And {} more of these values, in this case and {others} others.",
-                faults.len() - 1
-            );
+            let others = match cases.len() - 1 {
+                0 => String::new(),
+                1 => " and one other".into(),
+                others => format!(" and {others} others"),
+            };
+            let sentence = format!("And {} more of these values, in this case{others}.", faults.len() - 1);
             text.push_str(&wrapped(&sentence, "  "));
         }
     }
@@ -147,26 +154,35 @@ fn first_fault(case: &CaseReport, judged: &Judged, report: &Report) -> String {
         "infinitely many times".into()
     };
     format!(
-        "{place}{} is {}, and from the program's own values before it should be {}: off by {:.2e} of its unit, {noise} the rounding noise of {}.",
+        "{place}{} is {}, and from the program's own values before it should be {}: off by {:.2e} {}, {noise} the rounding noise of {}.",
         entry(judged, own.index, case),
-        own.shown,
-        own.expected,
+        number(own.shown),
+        number(own.expected),
         own.size,
+        unit(quantity),
         report.ready.precision,
     )
 }
 
 /// Steps whose equations have no answer on the program's own values.
-fn failures(report: &Report) -> Vec<String> {
-    report
+fn failures(report: &Report) -> String {
+    let failed: Vec<String> = report
         .cases
         .iter()
         .filter(|case| case.outcome.is_wrong())
-        .filter_map(|case| {
-            let failure = case.judgement.as_ref()?.failures.first()?;
-            Some(format!("{}: on the program's own values, {failure}.", case.id))
-        })
-        .collect()
+        .filter_map(|case| Some(format!("{}: {}.", case.id, case.judgement.as_ref()?.failures.first()?)))
+        .collect();
+    if failed.is_empty() {
+        return String::new();
+    }
+    let mut text = String::from("\nON THE PROGRAM'S OWN VALUES the equations have no answer here:\n");
+    for failure in failed.iter().take(3) {
+        text.push_str(&wrapped(failure, "  "));
+    }
+    if failed.len() > 3 {
+        let _ = writeln!(text, "  and in {} more cases.", failed.len() - 3);
+    }
+    text
 }
 
 /// A kind in a sentence.
@@ -178,50 +194,73 @@ fn kind(variant: &Variant) -> &'static str {
     }
 }
 
+fn one(variant: &Variant) -> String {
+    format!("{}  ({}; {})", variant.about, variant.id, kind(variant))
+}
+
+const EXPLAINED: &str = "every value that was shown is explained by the program's own values before it.";
+
 fn diagnosis(diagnosis: &Diagnosis) -> String {
     let mut text = String::new();
-    let one = |variant: &Variant| format!("{}  ({}; {})", variant.about, variant.id, kind(variant));
     match diagnosis {
-        Diagnosis::Nothing => return text,
+        Diagnosis::Nothing => {}
         Diagnosis::One(variants) => {
             text.push_str("\nMOST LIKELY\n");
             for variant in variants {
                 text.push_str(&wrapped(&one(variant), "  "));
             }
-            text.push_str(
-                "  With this, every value that was shown is explained by the program's own values before it.\n",
-            );
+            let _ = writeln!(text, "  With this, {EXPLAINED}");
             if variants.len() > 1 {
                 text.push_str("  These cannot be told apart by what was shown.\n");
             }
         }
-        Diagnosis::Two(pairs) => {
+        Diagnosis::Several(members) => {
+            let _ = writeln!(text, "\nMOST LIKELY, {} AT ONCE", members.len());
+            for alternatives in members {
+                for (index, variant) in alternatives.iter().enumerate() {
+                    let or = if index > 0 { "or " } else { "" };
+                    text.push_str(&wrapped(&format!("{or}{}", one(variant)), "  "));
+                }
+            }
+            let _ = writeln!(text, "  With these together, {EXPLAINED}");
+        }
+        Diagnosis::Pairs(pairs) => {
             text.push_str("\nMOST LIKELY, TWO AT ONCE\n");
             for [first, second] in pairs.iter().take(5) {
                 text.push_str(&wrapped(&one(first), "  "));
                 text.push_str(&wrapped(&format!("and {}", one(second)), "    "));
             }
-            text.push_str(
-                "  With both, every value that was shown is explained by the program's own values before it.\n",
-            );
+            let _ = writeln!(text, "  With both, {EXPLAINED}");
             if pairs.len() > 1 {
                 let _ = writeln!(
                     text,
-                    "  These {} pairs cannot be told apart by what was shown.",
+                    "  {} pairs do, and cannot be told apart by what was shown.",
                     pairs.len()
                 );
             }
         }
-        Diagnosis::Unknown { best, explained, of } => {
-            text.push_str("\nCAUSE  Nothing in the catalogue, alone or in pairs, explains every value.\n");
-            if !best.is_empty() {
+        Diagnosis::ByFilter(filters) => {
+            for (name, of_filter) in filters {
+                let sentence = match of_filter {
+                    Diagnosis::Nothing => "nothing wrong\n".to_owned(),
+                    of_filter => self::diagnosis(of_filter).trim_start().to_owned(),
+                };
+                let _ = write!(text, "\nFILTER {name}: {sentence}");
+            }
+        }
+        Diagnosis::Unknown { best, unexplained, of } => {
+            text.push_str("\nCAUSE  Nothing in the catalogue, alone or with others, explains every value.\n");
+            if let Some(first) = best.first() {
                 let _ = writeln!(
                     text,
-                    "  Alone, these explain {explained} of the {of} cases with a fault:"
+                    "  This explains {} of the {of} cases with a fault:",
+                    of - unexplained.len()
                 );
-                for variant in best.iter().take(5) {
-                    text.push_str(&wrapped(&one(variant), "    "));
-                }
+                text.push_str(&wrapped(&one(first), "    "));
+                let named: Vec<&str> = unexplained.iter().take(5).map(String::as_str).collect();
+                let more = if unexplained.len() > named.len() { ", …" } else { "" };
+                let sentence = format!("and leaves unexplained: {}{more}", named.join(", "));
+                text.push_str(&wrapped(&sentence, "    "));
             }
         }
     }
@@ -232,7 +271,31 @@ fn diagnosis(diagnosis: &Diagnosis) -> String {
 fn coverage(report: &Report) -> String {
     let (judged, of) = counts(report);
     let mut text = format!("\nCOVERAGE  {judged} of {of} values of the cases that were asked for were judged.\n");
-    if !report.hidden.is_empty() {
+    for (finding, sentence) in [
+        (
+            Finding::CannotTell,
+            "cannot be judged: rounding in this precision moves them by as much as their unit",
+        ),
+        (
+            Finding::Undetermined,
+            "are undetermined: they rest on hidden values that are under suspicion",
+        ),
+        (
+            Finding::Stale,
+            "are shown in steps without a detection, where there are none, and were passed over",
+        ),
+    ] {
+        let values = report
+            .cases
+            .iter()
+            .flat_map(|case| &case.judgement)
+            .flat_map(|judgement| &judgement.values);
+        let count = values.filter(|value| value.finding == finding).count();
+        if count > 0 {
+            let _ = writeln!(text, "  {count} {sentence}.");
+        }
+    }
+    if !report.hidden.is_empty() && judged > 0 {
         let names: Vec<&str> = report.hidden.iter().map(|quantity| quantity.name()).collect();
         let sentence = format!(
             "Never shown: {}. A mistake there is seen only by what follows from it, and what was right there by chance or \
@@ -243,7 +306,7 @@ fn coverage(report: &Report) -> String {
     }
     if report.not_asked > 0 {
         let sentence = format!(
-            "{} cases were not asked for: filters that the program does not have, or input that it leaves to its caller to check.",
+            "Cases not asked for: {}, of filters that the program does not have, or with input that it leaves to its caller to check.",
             report.not_asked
         );
         text.push_str(&wrapped(&sentence, "  "));
@@ -282,9 +345,10 @@ fn summary(report: &Report) -> String {
     .filter(|(number, _)| *number > 0)
     .map(|(number, word)| format!("{number} {word}"))
     .collect();
-    let digits = report.cases.iter().filter_map(|case| case.digits).reduce(f64::min);
-    let digits = digits.map_or(String::new(), |digits| {
-        format!("; right values to {digits:.1} digits or more")
+    let least = report.cases.iter().filter_map(|case| Some((case.digits?, &case.id)));
+    let least = least.reduce(|a, b| if b.0 < a.0 { b } else { a });
+    let digits = least.map_or(String::new(), |(digits, id)| {
+        format!("; right values to {digits:.1} digits or more, the fewest in {id}")
     });
     let verdict = match (&report.diagnosis, report.is_wrong()) {
         (_, true) => "WRONG",
@@ -294,10 +358,10 @@ fn summary(report: &Report) -> String {
     };
     let name = &report.ready.name;
     let sentence = format!(
-        "{verdict}: {name}, {}: of {} cases {}{digits}",
+        "{verdict}: {name}, {}: {} of {} cases{digits}",
         report.ready.precision,
-        report.cases.len(),
-        parts.join(", ")
+        parts.join(", "),
+        report.cases.len()
     );
     format!("\n{}", wrapped(&sentence, ""))
 }
@@ -379,20 +443,49 @@ fn finding(finding: Finding) -> &'static str {
 }
 
 fn diagnosis_json(diagnosis: &Diagnosis) -> Value {
-    let one = |variant: &Variant| json!({ "id": variant.id, "kind": kind(variant), "about": variant.about });
+    let one = |variant: &Variant| json!({ "id": variant.id, "kind": variant.kind.name(), "about": variant.about });
+    let list = |variants: &[&Variant]| -> Vec<Value> { variants.iter().map(|variant| one(variant)).collect() };
     match diagnosis {
         Diagnosis::Nothing => Value::Null,
-        Diagnosis::One(variants) => {
-            json!({ "any_of": variants.iter().map(|variant| vec![one(variant)]).collect::<Vec<_>>() })
+        Diagnosis::One(variants) => json!({ "one_of": list(variants) }),
+        Diagnosis::Several(members) => {
+            json!({ "together": members.iter().map(|member| json!({ "one_of": list(member) })).collect::<Vec<_>>() })
         }
-        Diagnosis::Two(pairs) => {
-            json!({ "any_of": pairs.iter().map(|pair| pair.map(one)).collect::<Vec<_>>() })
+        Diagnosis::Pairs(pairs) => {
+            json!({ "one_pair_of": pairs.iter().map(|pair| json!(list(pair))).collect::<Vec<_>>() })
         }
-        Diagnosis::Unknown { best, explained, of } => json!({
-            "any_of": [],
-            "best": best.iter().map(|variant| one(variant)).collect::<Vec<_>>(),
-            "explained": explained,
-            "of": of,
+        Diagnosis::ByFilter(filters) => {
+            let of_filter = |(name, found): &(String, Diagnosis)| (name.clone(), diagnosis_json(found));
+            json!({ "by_filter": filters.iter().map(of_filter).collect::<serde_json::Map<_, _>>() })
+        }
+        Diagnosis::Unknown { best, unexplained, of } => json!({
+            "unknown": true,
+            "best": list(best),
+            "unexplained_by_the_first": unexplained,
+            "faulty_cases": of,
         }),
+    }
+}
+
+/// A number with an exponent where it would be long without.
+fn number(value: f64) -> String {
+    if value == 0.0 || (1e-4..1e9).contains(&value.abs()) {
+        format!("{value}")
+    } else {
+        format!("{value:e}")
+    }
+}
+
+/// In what a quantity's errors are counted.
+fn unit(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::PredictedModeProbabilities | Quantity::MixingProbabilities | Quantity::ModeProbabilities => {
+            "of itself"
+        }
+        Quantity::LogLikelihood => "",
+        Quantity::Gain => "√(Pᵢᵢ/Sⱼⱼ)",
+        Quantity::CrossCovariance => "√(Pᵢᵢ Sⱼⱼ)",
+        quantity if quantity.is_covariance() => "√(Pᵢᵢ Pⱼⱼ)",
+        _ => "standard deviations",
     }
 }

@@ -134,6 +134,11 @@ fn missed() -> Vec<ProblemFile> {
             "The second of four steps has no detection: the chain moves the probabilities, the last likelihood must not move them again, \
              and the prediction is the estimate.",
         ),
+        radar("unscented").without(&[2]).named(
+            "missed.unscented",
+            &flags,
+            "A missed detection in a filter with points and a negative weight: the next points are drawn from the prediction.",
+        ),
         plane().sees(&PLANE_TRACK).without(&[2, 3, 4]).named(
             "missed.several",
             &in_a_row,

@@ -85,6 +85,14 @@ fn of_probability<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut
         "probabilities-not-advanced" => {
             equations.undetected_mode_probability = |_, previous, _, j| previous.mode_probabilities[j].clone();
         }
+        // N(0; 0, S) with the S of the last detection
+        "last-covariance-used-again" => {
+            equations.undetected_log_likelihood = |_, previous, _, j| match previous.measurement {
+                Some(_) => log_density(&SVector::zeros(), &ldl(&previous.innovation_covariances[j])),
+                None => previous.log_likelihoods[j].clone(),
+            };
+            equations.undetected_mode_probability = |_, _, now, j| by_bayes(now, j);
+        }
         // Lⱼ of the last detection; before the first there is none, and all are one
         "last-likelihood-used-again" => {
             equations.undetected_log_likelihood = |_, previous, _, j| previous.log_likelihoods[j].clone();

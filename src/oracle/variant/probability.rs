@@ -20,6 +20,8 @@ fn of_bayes<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup
     match id {
         // μⱼ = Lⱼ μⱼ(k−1) / Σᵢ Lᵢ μᵢ(k−1)
         "updated-with-old-probabilities" => {
+            equations.relative_likelihood =
+                |_, previous, now, j| relative_likelihood(&now.log_likelihoods, &previous.mode_probabilities, j);
             equations.evidence = |_, previous, now| evidence(&now.relative_likelihoods, &previous.mode_probabilities);
             equations.mode_probability = |_, previous, now, j| {
                 mode_probability(
