@@ -9,8 +9,8 @@ use super::trace::{Dimensions, Trace, read_json};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader, Read, Write};
-use std::process::{Child, Command, Stdio};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, SyncSender, channel, sync_channel};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
@@ -20,6 +20,15 @@ pub const PROTOCOL: &str = "immaculate-check/1";
 /// No line of an answer may be longer, in bytes.
 const LONGEST_LINE: u64 = 1 << 26;
 
+/// So many lines wait to be read; a program that writes more is held up, so that it fills no memory.
+const WAITING: usize = 4;
+
+/// So many remarks are kept.
+const REMARKS: usize = 100;
+
+/// The time that a program has to end after `stop`.
+const LAST_MOMENTS: Duration = Duration::from_secs(2);
+
 /// So much of what a program writes to standard error is kept for a report.
 const STDERR_KEPT: usize = 1000;
 
@@ -27,8 +36,9 @@ const STDERR_KEPT: usize = 1000;
 pub struct Process {
     command: Vec<String>,
     limit: Duration,
+    start_limit: Duration,
     running: Option<Running>,
-    answered: BTreeSet<String>,
+    asked: BTreeSet<String>,
     remarks: Vec<String>,
 }
 
@@ -49,19 +59,39 @@ enum Line {
 }
 
 impl Process {
-    /// A process from a command and its arguments, with a time limit for each answer.
+    /// A process from a command and its arguments, with a time limit for each answer. To start it has twenty seconds more: an
+    /// interpreter may take a while.
     pub fn new(command: Vec<String>, limit: Duration) -> Self {
         Self {
             command,
             limit,
+            start_limit: limit + Duration::from_secs(20),
             running: None,
-            answered: BTreeSet::new(),
+            asked: BTreeSet::new(),
             remarks: Vec::new(),
         }
     }
 
+    /// The same with another time limit for the first message.
+    #[must_use]
+    pub fn ready_within(mut self, start_limit: Duration) -> Self {
+        self.start_limit = start_limit;
+        self
+    }
+
     /// Starts the process and exchanges the first messages.
     fn launch(&mut self) -> Result<Ready, Broken> {
+        self.spawn()?;
+        let ready = self.greet();
+        if ready.is_err() {
+            // What did not introduce itself is asked nothing.
+            self.kill();
+        }
+        ready
+    }
+
+    /// Starts the process, and a thread for each of its pipes.
+    fn spawn(&mut self) -> Result<(), Broken> {
         let (program, arguments) = self
             .command
             .split_first()
@@ -73,7 +103,7 @@ impl Process {
             .stderr(Stdio::piped())
             .spawn()
             .map_err(|error| Broken::NotStarted(format!("`{program}` cannot be started: {error}")))?;
-        let (line_sender, lines) = channel();
+        let (line_sender, lines) = sync_channel(WAITING);
         let (requests, request_receiver) = channel::<String>();
         let stderr = Arc::new(Mutex::new(String::new()));
         if let Some(stdout) = child.stdout.take() {
@@ -99,13 +129,17 @@ impl Process {
             stderr,
             has_spoken: false,
         });
+        Ok(())
+    }
+
+    /// The first messages.
+    fn greet(&mut self) -> Result<Ready, Broken> {
         self.send(&json!({
             "type": "start",
             "protocol": PROTOCOL,
             "echo": { "matrix": ECHO.0, "vector": ECHO.1 },
         }));
-        // An interpreter may take a while to start.
-        let message = self.receive(self.limit + Duration::from_secs(20))?;
+        let message = self.receive(Instant::now(), self.start_limit)?;
         match message.get("type").and_then(Value::as_str) {
             Some("ready") => Ready::read(&message).map_err(|reason| Broken::Garbage {
                 line: shortened(&message.to_string()),
@@ -125,17 +159,20 @@ impl Process {
         }
     }
 
-    /// The next message; lines that do not start with a brace are passed over.
-    fn receive(&mut self, limit: Duration) -> Result<Value, Broken> {
+    /// The next message, if it comes within a time; lines that do not start with a brace are passed over.
+    fn receive(&mut self, since: Instant, limit: Duration) -> Result<Value, Broken> {
         let Some(running) = &mut self.running else {
             return Err(Broken::NotStarted("the program is not running".into()));
         };
-        let end = Instant::now() + limit;
         let broken = loop {
-            match running
-                .lines
-                .recv_timeout(end.saturating_duration_since(Instant::now()))
-            {
+            let left = (since + limit).saturating_duration_since(Instant::now());
+            let line = if left.is_zero() {
+                // A program that floods always has a line ready.
+                Err(RecvTimeoutError::Timeout)
+            } else {
+                running.lines.recv_timeout(left)
+            };
+            match line {
                 Ok(Line::Text(line)) => {
                     running.has_spoken = true;
                     if !line.trim_start().starts_with('{') {
@@ -186,7 +223,7 @@ impl Process {
         }
     }
 
-    /// The answer to a problem; answers to problems that were answered before are remarked upon and passed over.
+    /// The answer to a problem; answers to problems that were asked before are remarked upon and passed over.
     fn answer(&mut self, problem: &ProblemFile) -> Result<Answer, Broken> {
         let (n, m, r) = problem.dimensions();
         let dimensions = Dimensions {
@@ -195,12 +232,12 @@ impl Process {
             r,
             steps: problem.measurements.len(),
         };
-        let end = Instant::now() + self.limit;
+        let since = Instant::now();
         loop {
-            let message = self.receive(end.saturating_duration_since(Instant::now()))?;
+            let message = self.receive(since, self.limit)?;
             let id = message.get("id").and_then(Value::as_str).unwrap_or_default().to_owned();
-            if id != problem.id && self.answered.contains(&id) {
-                self.remarks.push(format!("answered `{id}` more than once"));
+            if id != problem.id && self.asked.contains(&id) {
+                remark(&mut self.remarks, format!("answered `{id}` late or more than once"));
                 continue;
             }
             if id != problem.id {
@@ -209,7 +246,6 @@ impl Process {
                     answered: id,
                 });
             }
-            self.answered.insert(id);
             return read_answer(&message, dimensions);
         }
     }
@@ -226,25 +262,33 @@ impl Subject for Process {
         {
             return Answer::Broken(broken);
         }
+        self.asked.insert(problem.id.clone());
         self.send(&json!({ "type": "run", "problem": problem }));
         self.answer(problem).unwrap_or_else(Answer::Broken)
     }
 
     fn stop(&mut self) -> Vec<String> {
         self.send(&json!({ "type": "stop" }));
-        let end = Instant::now() + Duration::from_secs(2);
+        let end = Instant::now() + LAST_MOMENTS;
         if let Some(running) = &mut self.running {
-            while Instant::now() < end && matches!(running.child.try_wait(), Ok(None)) {
-                std::thread::sleep(Duration::from_millis(5));
-            }
-            for line in running.lines.try_iter() {
+            // Its input ends, too, after what is still to be written.
+            running.requests = channel().0;
+            // The lines end when the program does.
+            while let Ok(line) = running
+                .lines
+                .recv_timeout(end.saturating_duration_since(Instant::now()))
+            {
                 if let Line::Text(line) = line
                     && line.trim_start().starts_with('{')
                 {
-                    self.remarks
-                        .push(format!("said more than it was asked for: {}", shortened(&line)));
+                    let sentence = format!("said more than it was asked for: {}", shortened(&line));
+                    remark(&mut self.remarks, sentence);
+                }
+                if Instant::now() > end {
+                    break;
                 }
             }
+            end_of(&mut running.child, end);
         }
         self.kill();
         std::mem::take(&mut self.remarks)
@@ -263,6 +307,12 @@ impl Drop for Process {
 ///
 /// [`Broken`] when it is not one.
 pub fn read_answer(message: &Value, dimensions: Dimensions) -> Result<Answer, Broken> {
+    if !message.is_object() {
+        return Err(Broken::Garbage {
+            line: shortened(&message.to_string()),
+            reason: "an answer is an object".into(),
+        });
+    }
     let text = |key: &str| message.get(key).and_then(Value::as_str).unwrap_or_default().to_owned();
     match message.get("type").and_then(Value::as_str) {
         Some("answer") | None => {
@@ -273,7 +323,7 @@ pub fn read_answer(message: &Value, dimensions: Dimensions) -> Result<Answer, Br
                     return Err(Broken::Garbage { line, reason });
                 }
             }
-            let error = message.get("error").and_then(Value::as_str).map(str::to_owned);
+            let error = error_of(message.get("error"));
             let empty = Value::Array(Vec::new());
             let steps = message.get("steps").unwrap_or(&empty);
             let trace = Trace::from_json(steps, dimensions).map_err(Broken::Invalid)?;
@@ -291,18 +341,38 @@ pub fn read_answer(message: &Value, dimensions: Dimensions) -> Result<Answer, Br
     }
 }
 
-fn read_lines(stdout: impl Read, lines: &Sender<Line>) {
+/// Why a program stopped before the end. Some writers have an empty text or list for nothing.
+fn error_of(value: Option<&Value>) -> Option<String> {
+    match value? {
+        Value::Null | Value::Bool(false) => None,
+        Value::String(text) => (!text.trim().is_empty()).then(|| text.clone()),
+        Value::Array(list) if list.is_empty() => None,
+        Value::Object(object) if object.is_empty() => None,
+        other => Some(shortened(&other.to_string())),
+    }
+}
+
+fn read_lines(stdout: impl Read, lines: &SyncSender<Line>) {
     let mut reader = BufReader::new(stdout);
     loop {
         let mut bytes = Vec::new();
         let line = match reader.by_ref().take(LONGEST_LINE).read_until(b'\n', &mut bytes) {
             Ok(0) | Err(_) => return,
             Ok(length) if length as u64 == LONGEST_LINE => Line::TooLong,
-            Ok(_) => String::from_utf8(bytes).map_or(Line::NotText, Line::Text),
+            Ok(_) => String::from_utf8(bytes).map_or_else(|error| not_text(error.as_bytes()), Line::Text),
         };
         if lines.send(line).is_err() {
             return;
         }
+    }
+}
+
+/// A line that is not UTF-8: a message that cannot be read, or a line that is passed over in any encoding.
+fn not_text(bytes: &[u8]) -> Line {
+    if bytes.trim_ascii_start().starts_with(b"{") {
+        Line::NotText
+    } else {
+        Line::Text(String::from_utf8_lossy(bytes).into_owned())
     }
 }
 
@@ -322,11 +392,29 @@ fn keep_last(mut pipe: impl Read, kept: &Mutex<String>) {
     }
 }
 
+/// A remark, once, as long as there are not too many.
+fn remark(remarks: &mut Vec<String>, sentence: String) {
+    if remarks.len() < REMARKS && !remarks.contains(&sentence) {
+        remarks.push(sentence);
+    }
+}
+
+/// How a process ended, if it does in time.
+fn end_of(child: &mut Child, end: Instant) -> Option<ExitStatus> {
+    loop {
+        match child.try_wait() {
+            Ok(None) if Instant::now() < end => std::thread::sleep(Duration::from_millis(5)),
+            Ok(status) => return status,
+            Err(_) => return None,
+        }
+    }
+}
+
 fn crashed(running: &mut Running) -> Broken {
-    let status = running
-        .child
-        .wait()
-        .map_or_else(|error| error.to_string(), |status| status.to_string());
+    let status = end_of(&mut running.child, Instant::now() + LAST_MOMENTS / 4).map_or_else(
+        || "it closed its output and went on".to_owned(),
+        |status| status.to_string(),
+    );
     // What it wrote last may still be on its way.
     std::thread::sleep(Duration::from_millis(50));
     let stderr = running
