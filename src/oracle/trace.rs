@@ -353,10 +353,11 @@ fn quote_not_finite(text: &str) -> String {
         let word_end = rest
             .find(|c: char| !c.is_ascii_alphabetic() && c != '-' && c != '+')
             .unwrap_or(rest.len());
-        if !in_string && word_end > 0 && is_not_finite(&rest[..word_end]) {
-            quoted.push('"');
-            quoted.push_str(&rest[..word_end]);
-            quoted.push('"');
+        if word_end > 0 {
+            // A word as a whole: a long one letter by letter would take for ever.
+            let word = &rest[..word_end];
+            let quote = if !in_string && is_not_finite(word) { "\"" } else { "" };
+            quoted.extend([quote, word, quote]);
             rest = &rest[word_end..];
             continue;
         }
