@@ -319,8 +319,9 @@ fn judge_answer(case: &Case, answer: Answer, ready: &Ready, conventions: &[&str]
                     other_class: (given != class.name()).then_some(given),
                 },
                 Answer::Skipped { reason } => Outcome::Skipped { reason },
+                // Values of any shape are values: the problem was run.
+                Answer::Steps { .. } | Answer::Broken(Broken::Invalid(_)) => Outcome::NotRejected,
                 Answer::Broken(broken) => Outcome::Broken(broken),
-                Answer::Steps { .. } => Outcome::NotRejected,
             };
             return Ok((report, None));
         }
@@ -341,6 +342,10 @@ fn judge_answer(case: &Case, answer: Answer, ready: &Ready, conventions: &[&str]
             return Ok((report, None));
         }
     };
+    if let Err(invalid) = shown.check(report.dimensions) {
+        report.outcome = Outcome::Broken(Broken::Invalid(invalid));
+        return Ok((report, None));
+    }
     let reference = reference_of(case, expected, conventions, ready.precision)?;
     let judgement = judge::Case {
         problem: &case.problem,

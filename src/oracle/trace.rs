@@ -151,6 +151,29 @@ pub fn numbers_as_json<X: Serialize>(quantity: Quantity, dimensions: Dimensions,
 }
 
 impl Trace {
+    /// Checks that the trace has a problem's dimensions, and every value its own.
+    ///
+    /// # Errors
+    ///
+    /// [`Invalid`] with the place.
+    pub fn check(&self, dimensions: Dimensions) -> Result<(), Invalid> {
+        if self.dimensions != dimensions {
+            let reason = format!("has {:?} where the problem has {dimensions:?}", self.dimensions);
+            return Err(Invalid::new(Class::Shape, "trace", reason));
+        }
+        let Dimensions { n, m, r, .. } = dimensions;
+        for (step, quantity, mode) in self.all_places() {
+            let (rows, columns) = quantity.shape(n, m, r);
+            let found = self.get(step, quantity, mode).map_or(rows * columns, Vec::len);
+            if found != rows * columns {
+                let place = format!("step {step}, mode {mode}: {}", quantity.name());
+                let reason = format!("has {found} numbers where {rows} × {columns} are needed");
+                return Err(Invalid::new(Class::Shape, place, reason));
+            }
+        }
+        Ok(())
+    }
+
     /// The list of steps as JSON.
     pub fn steps_as_json(&self) -> Vec<Value> {
         self.to_json(|quantity, values| numbers_as_json(quantity, self.dimensions, values))
