@@ -6,6 +6,7 @@
 use super::invalid::{Class, Invalid};
 use super::trace::{Dimensions, Trace, is_not_finite};
 use crate::imm::Quantity;
+use std::borrow::Cow;
 use std::fmt::Write;
 
 /// The header of a trace or an answer.
@@ -20,6 +21,7 @@ pub fn write(
 ) -> String {
     let mut text = format!("{HEADER}{header}\n");
     let Dimensions { n, m, r, .. } = trace.dimensions;
+    let id = quoted(id);
     for (step, quantity, mode) in trace.all_places() {
         let Some(values) = trace.get(step, quantity, mode) else {
             continue;
@@ -45,6 +47,18 @@ pub fn write(
     text
 }
 
+/// A text as a field, in quotes where it needs them.
+fn quoted(text: &str) -> Cow<'_, str> {
+    if text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\"")).into()
+    } else {
+        text.into()
+    }
+}
+
+/// The numbers of a trace that were read.
+type Seen = super::trace::Table<Vec<bool>>;
+
 /// Reads an answer; the lines of other cases are passed over.
 ///
 /// # Errors
@@ -52,7 +66,7 @@ pub fn write(
 /// [`Invalid`] with the line.
 pub fn read(text: &str, id: &str, dimensions: Dimensions) -> Result<Trace, Invalid> {
     let mut trace = Trace::empty(dimensions);
-    let mut counts = super::trace::Table::<usize>::empty(dimensions);
+    let mut seen = Seen::empty(dimensions);
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
         .flexible(true)
@@ -71,10 +85,10 @@ pub fn read(text: &str, id: &str, dimensions: Dimensions) -> Result<Trace, Inval
             return Err(bad(&place, "has fewer than seven columns"));
         }
         if fields[0] == id {
-            read_line(&mut trace, &mut counts, &fields, &place)?;
+            read_line(&mut trace, &mut seen, &fields, &place)?;
         }
     }
-    check_complete(&trace, &counts)?;
+    check_complete(&trace, &seen)?;
     Ok(trace)
 }
 
@@ -82,12 +96,7 @@ fn bad(place: &str, reason: impl Into<String>) -> Invalid {
     Invalid::new(Class::Format, place, reason)
 }
 
-fn read_line(
-    trace: &mut Trace,
-    counts: &mut super::trace::Table<usize>,
-    fields: &[&str],
-    place: &str,
-) -> Result<(), Invalid> {
+fn read_line(trace: &mut Trace, seen: &mut Seen, fields: &[&str], place: &str) -> Result<(), Invalid> {
     let Dimensions { n, m, r, steps } = trace.dimensions;
     let Some(quantity) = Quantity::ALL.into_iter().find(|quantity| quantity.name() == fields[3]) else {
         return Err(bad(place, format!("has {:?}, which is not a quantity", fields[3])));
@@ -126,25 +135,32 @@ fn read_line(
             .parse()
             .map_err(|_| bad(place, format!("has value {word:?}, which is not a number")))?,
     };
+    let mut places = seen
+        .get(step, quantity, mode)
+        .cloned()
+        .unwrap_or_else(|| vec![false; rows * columns]);
+    if std::mem::replace(&mut places[row * columns + column], true) {
+        return Err(bad(place, "has a number that an earlier line has, too"));
+    }
+    seen.set(step, quantity, mode, places);
     let mut values = trace
         .get(step, quantity, mode)
         .cloned()
         .unwrap_or_else(|| vec![f64::NAN; rows * columns]);
     values[row * columns + column] = value;
     trace.set(step, quantity, mode, values);
-    let count = counts.get(step, quantity, mode).copied().unwrap_or(0);
-    counts.set(step, quantity, mode, count + 1);
     Ok(())
 }
 
 /// A quantity is shown whole or not at all, and each of its numbers once.
-fn check_complete(trace: &Trace, counts: &super::trace::Table<usize>) -> Result<(), Invalid> {
+fn check_complete(trace: &Trace, seen: &Seen) -> Result<(), Invalid> {
     let Dimensions { n, m, r, .. } = trace.dimensions;
     for (step, quantity, mode) in trace.all_places() {
         let (rows, columns) = quantity.shape(n, m, r);
-        let Some(&found) = counts.get(step, quantity, mode) else {
+        let Some(places) = seen.get(step, quantity, mode) else {
             continue;
         };
+        let found = places.iter().filter(|is_there| **is_there).count();
         if found != rows * columns {
             let place = format!("step {step}, mode {}, {}", mode + 1, quantity.name());
             let reason = format!("has {found} lines where {rows} × {columns} numbers are needed");
