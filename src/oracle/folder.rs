@@ -5,6 +5,7 @@ use super::problem::ProblemFile;
 use super::process::read_answer;
 use super::subject::{Answer, Broken, Ready, Subject};
 use super::trace::{Dimensions, read_json};
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 /// A folder of answers.
@@ -60,7 +61,13 @@ impl Folder {
                 line: path.display().to_string(),
                 reason,
             })?;
-            return read_answer(&message, dimensions);
+            return match message.get("id").and_then(Value::as_str) {
+                Some(id) if id != problem.id => Err(Broken::OutOfOrder {
+                    asked: problem.id.clone(),
+                    answered: id.to_owned(),
+                }),
+                _ => read_answer(&message, dimensions),
+            };
         }
         if let Some(text) = read_file(&self.path.join(format!("{}.csv", problem.id)))? {
             let trace = csv::read(&text, &problem.id, dimensions).map_err(Broken::Invalid)?;
