@@ -36,4 +36,5 @@ pub mod setup;
 pub mod shape;
 pub mod subject;
 pub mod trace;
+mod unreadable;
 pub mod variant;

@@ -4,14 +4,24 @@
 //! and how every defect of a file becomes one sentence with the place inside the file.
 
 use super::invalid::{Class, Invalid};
-use super::shape;
+use super::{shape, unreadable};
 use crate::imm::InvalidProblem;
-use crate::rule::RuleName;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The format of problem files.
 pub const FORMAT: &str = "immaculate-problem/1";
+
+/// The rules of cubature filters. What a paper prints wrongly is no rule of a problem.
+pub const RULES: [&str; 7] = [
+    "cubature-3",
+    "cubature-5",
+    "simplex-5",
+    "gauss-hermite-2",
+    "gauss-hermite-3",
+    "gauss-hermite-4",
+    "gauss-hermite-5",
+];
 
 /// A matrix as a list of rows.
 pub type Rows = Vec<Vec<f64>>;
@@ -209,15 +219,8 @@ impl ProblemFile {
     /// [`Invalid`] with the place inside the file.
     pub fn parse(text: &str) -> Result<Self, Invalid> {
         let mut deserializer = serde_json::Deserializer::from_str(text);
-        let problem: Self = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
-            let place = error.path().to_string();
-            let place = if place == "." {
-                "problem".to_owned()
-            } else {
-                format!("problem.{place}")
-            };
-            Invalid::new(Class::Format, place, error.inner().to_string())
-        })?;
+        let problem: Self = serde_path_to_error::deserialize(&mut deserializer)
+            .map_err(|error| unreadable::reason(text, &error.path().to_string(), &error.inner().to_string()))?;
         deserializer
             .end()
             .map_err(|error| Invalid::new(Class::Format, "problem", error.to_string()))?;
@@ -309,16 +312,16 @@ impl ProblemFile {
 
     fn check_filter(&self) -> Result<(), Invalid> {
         match &self.filter {
-            FilterFile::Cubature { rule } => rule
-                .parse::<RuleName>()
-                .map(drop)
-                .map_err(|error| Invalid::new(Class::Unknown, "problem.filter.rule", error.to_string())),
+            FilterFile::Cubature { rule } if !RULES.contains(&rule.as_str()) => {
+                let reason = format!("is {rule:?}; known are {}", RULES.join(", "));
+                Err(Invalid::new(Class::Unknown, "problem.filter.rule", reason))
+            }
             FilterFile::Kalman {} if !matches!(self.measurement, MeasurementFile::Linear { .. }) => Err(Invalid::new(
                 Class::Unknown,
                 "problem.filter.kind",
                 "is kalman, which has no range and bearing; use a filter with points",
             )),
-            FilterFile::Kalman {} | FilterFile::Unscented { .. } => Ok(()),
+            FilterFile::Kalman {} | FilterFile::Cubature { .. } | FilterFile::Unscented { .. } => Ok(()),
         }
     }
 
@@ -338,6 +341,13 @@ impl ProblemFile {
             let field = format!("problem.measurements[{place}].z");
             check_length(&field, z.len(), m)?;
             for (row, value) in z.iter().enumerate() {
+                if !value.is_finite() {
+                    return Err(Invalid::new(
+                        Class::NotFinite,
+                        format!("{field}[{row}]"),
+                        "is not finite",
+                    ));
+                }
                 if self.is_bearing(row) && value.abs() > 2.0 * std::f64::consts::PI {
                     let reason = format!("is {value}, a bearing outside ±2π: is it in degrees?");
                     return Err(Invalid::new(Class::Angle, format!("{field}[{row}]"), reason));

@@ -1,0 +1,128 @@
+//! What is wrong with a problem file whose JSON or keys are wrong, and where.
+//!
+//! After this file the reader knows how a sentence of the JSON reader becomes one with the place inside the file. The reader of objects
+//! that have a `kind` must know the kind before it can read the rest, and forgets the places on the way; here they are found again.
+
+use super::invalid::{Class, Invalid};
+use super::problem::Rows;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+
+/// Reads a value for nothing but its error: the place inside the value, and the sentence.
+type Attempt = fn(&Value) -> Result<(), (String, String)>;
+
+/// A kind with its keys.
+type Kind = (&'static str, &'static [(&'static str, Attempt)]);
+
+/// The objects of a problem that have a `kind`, with their kinds.
+const OBJECTS: [(&str, &[Kind]); 2] = [
+    (
+        "measurement",
+        &[
+            ("linear", &[("H", attempt::<Rows>)]),
+            (
+                "range-bearing",
+                &[
+                    ("components", attempt::<Vec<String>>),
+                    ("position", attempt::<[usize; 2]>),
+                    ("sensor", attempt::<[f64; 2]>),
+                ],
+            ),
+        ],
+    ),
+    (
+        "filter",
+        &[
+            ("kalman", &[]),
+            ("cubature", &[("rule", attempt::<String>)]),
+            (
+                "unscented",
+                &[
+                    ("alpha", attempt::<f64>),
+                    ("beta", attempt::<f64>),
+                    ("kappa", attempt::<f64>),
+                ],
+            ),
+        ],
+    ),
+];
+
+fn attempt<T: DeserializeOwned>(value: &Value) -> Result<(), (String, String)> {
+    serde_path_to_error::deserialize::<_, T>(value)
+        .map(drop)
+        .map_err(|error| (error.path().to_string(), error.inner().to_string()))
+}
+
+/// The reason why a problem cannot be read, from the place and the sentence of the JSON reader.
+pub(super) fn reason(text: &str, place: &str, sentence: &str) -> Invalid {
+    let place = joined("problem", place);
+    for (key, kinds) in OBJECTS {
+        if [format!("problem.{key}"), format!("problem.{key}.kind")].contains(&place)
+            && let Some(invalid) = inside(text, key, kinds)
+        {
+            return invalid;
+        }
+    }
+    if let Some((field, _)) = sentence
+        .strip_prefix("missing field `")
+        .and_then(|rest| rest.split_once('`'))
+    {
+        return Invalid::new(Class::Format, format!("{place}.{field}"), "is missing");
+    }
+    Invalid::new(class_of(sentence), place, sentence)
+}
+
+/// The class of a sentence of the JSON reader.
+fn class_of(sentence: &str) -> Class {
+    if sentence.starts_with("number out of range") {
+        Class::NotFinite
+    } else if sentence.starts_with("invalid length") {
+        Class::Shape
+    } else {
+        Class::Format
+    }
+}
+
+/// A place inside another; the JSON reader writes a dot for the whole.
+fn joined(outer: &str, inner: &str) -> String {
+    // A question mark stands for a key that was not read to its end.
+    match inner.trim_end_matches(".?") {
+        "." | "?" => outer.to_owned(),
+        inner if inner.starts_with('[') => format!("{outer}{inner}"),
+        inner => format!("{outer}.{inner}"),
+    }
+}
+
+/// What is wrong inside an object that has a kind, if the rest of the file is JSON.
+fn inside(text: &str, key: &str, kinds: &[Kind]) -> Option<Invalid> {
+    let file: Value = serde_json::from_str(text).ok()?;
+    let place = format!("problem.{key}");
+    let wrong = |class, inner: &str, reason: String| Some(Invalid::new(class, joined(&place, inner), reason));
+    let Some(object) = file.get(key)?.as_object() else {
+        return wrong(Class::Format, ".", "is not an object".into());
+    };
+    let Some(name) = object.get("kind") else {
+        return wrong(Class::Format, "kind", "is missing".into());
+    };
+    let Some((_, keys)) = kinds.iter().find(|(kind, _)| name == kind) else {
+        let known: Vec<&str> = kinds.iter().map(|(kind, _)| *kind).collect();
+        return wrong(
+            Class::Unknown,
+            "kind",
+            format!("is {name}; known are {}", known.join(", ")),
+        );
+    };
+    let is_known = |key: &str| key == "kind" || keys.iter().any(|(known, _)| *known == key);
+    if let Some(stranger) = object.keys().find(|key| !is_known(key)) {
+        return wrong(Class::Format, stranger, format!("is not a key beside the kind {name}"));
+    }
+    for (key, attempt) in *keys {
+        let Some(value) = object.get(*key) else {
+            return wrong(Class::Format, key, "is missing".into());
+        };
+        if let Err((inner, sentence)) = attempt(value) {
+            return wrong(class_of(&sentence), &joined(key, &inner), sentence);
+        }
+    }
+    None
+}
