@@ -205,8 +205,7 @@ fn write(folder: &Path) -> Result<Done, Refusal> {
     let path = folder.join(LOCK);
     let text =
         std::fs::read_to_string(&path).map_err(|error| Refusal::request(format!("{}: {error}", path.display())))?;
-    let mut lock: Lock =
-        serde_json::from_str(&text).map_err(|error| Refusal::request(format!("{}: {error}", path.display())))?;
+    let mut lock = Lock::read(&text).map_err(|error| Refusal::request(format!("{}: {error}", path.display())))?;
     let problems = published::all();
     for problem in problems
         .iter()

@@ -152,10 +152,29 @@ pub fn all() -> Result<&'static [Case], BadCase> {
 ///
 /// [`BadCase`] when it is missing or unreadable.
 pub fn lock() -> Result<Lock, BadCase> {
-    serde_json::from_str(text(LOCK)?).map_err(|error| BadCase::Unreadable {
+    Lock::read(text(LOCK)?).map_err(|reason| BadCase::Unreadable {
         file: LOCK.into(),
-        reason: error.to_string(),
+        reason,
     })
+}
+
+impl Lock {
+    /// The format of lock files.
+    pub const FORMAT: &str = "immaculate-lock/1";
+
+    /// Reads a lock.
+    ///
+    /// # Errors
+    ///
+    /// The reason why it cannot be read.
+    pub fn read(text: &str) -> Result<Self, String> {
+        let lock: Self = serde_json::from_str(text).map_err(|error| error.to_string())?;
+        if lock.format == Self::FORMAT {
+            return Ok(lock);
+        }
+        let (found, known) = (&lock.format, Self::FORMAT);
+        Err(format!("format is {found:?}, but this program reads {known:?}"))
+    }
 }
 
 fn text(name: &str) -> Result<&'static str, BadCase> {
@@ -184,7 +203,12 @@ fn locked_text(name: &str, locked: &str) -> Result<&'static str, BadCase> {
     })
 }
 
-fn read(locked: &Locked) -> Result<Case, BadCase> {
+/// Reads a case and holds its files against the lock.
+///
+/// # Errors
+///
+/// As [`all`].
+pub fn read(locked: &Locked) -> Result<Case, BadCase> {
     let (problem_name, trace_name) = (problem_name(&locked.id), trace_name(&locked.id));
     let problem_text = locked_text(&problem_name, &locked.problem)?;
     let trace_text = locked_text(&trace_name, &locked.trace)?;
