@@ -12,6 +12,8 @@ use serde_json::{Map, Value, json};
 pub fn of_problems() -> Value {
     let mut schema = json!(schemars::schema_for!(ProblemFile));
     schema["properties"]["format"]["const"] = json!(problem::FORMAT);
+    // The key is required, and null says that there is no detection.
+    schema["$defs"]["MeasurementAt"]["properties"]["z"]["type"] = json!(["array", "null"]);
     schema
 }
 
