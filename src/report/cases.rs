@@ -1,6 +1,6 @@
 //! The published cases for people.
 
-use super::{table, wrapped};
+use super::{never_broken, table, wrapped};
 use crate::oracle::case::{BadCase, Case, Expected};
 use crate::oracle::certify::Certified;
 use crate::oracle::published::FLAGS;
@@ -15,6 +15,7 @@ pub fn list(cases: &[&Case]) -> String {
     for column in table.column_iter_mut().skip(5) {
         column.set_cell_alignment(CellAlignment::Left);
     }
+    never_broken(&mut table, 0);
     for case in cases {
         let problem = &case.problem;
         let (n, m, r) = problem.dimensions();

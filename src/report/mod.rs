@@ -13,7 +13,7 @@ pub mod trace;
 pub mod variants;
 
 use crate::paper::specification::Citation;
-use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
+use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Table, TableStyle};
 
 /// The width that all tables fit.
 pub const WIDTH: u16 = 100;
@@ -36,6 +36,13 @@ fn table(header: &[&str]) -> Table {
         column.set_cell_alignment(CellAlignment::Right);
     }
     table
+}
+
+/// A column whose entries are not broken into lines: names that a reader may want to copy.
+fn never_broken(table: &mut Table, index: usize) {
+    if let Some(column) = table.column_mut(index) {
+        column.set_constraint(ColumnConstraint::ContentWidth);
+    }
 }
 
 /// A number of standard errors, with its sign.

@@ -1,6 +1,6 @@
 //! The catalogue of variants for people.
 
-use super::{table, wrapped};
+use super::{never_broken, table, wrapped};
 use crate::oracle::variant::{Kind, Variant};
 use comfy_table::CellAlignment;
 use serde_json::{Value, json};
@@ -11,6 +11,7 @@ pub fn table_of(variants: &[Variant]) -> String {
     for column in table.column_iter_mut() {
         column.set_cell_alignment(CellAlignment::Left);
     }
+    never_broken(&mut table, 0);
     for variant in variants {
         table.add_row(vec![
             &variant.id,
