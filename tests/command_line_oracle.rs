@@ -1,0 +1,604 @@
+//! Goal: the commands of the oracle do what their help says, and whatever they are given they answer with a sentence, an exit status, and
+//! no half-written file.
+//!
+//! Method: the program is run as a reader would run it, with its output in pipes, and its output is held against the library and the
+//! published files. Kind of evidence: behaviour, by examples, good and bad. The command `check` has a file of its own.
+
+use immaculate::imm::Quantity;
+use immaculate::oracle::case::{self, Case, Expected};
+use immaculate::oracle::csv;
+use immaculate::oracle::run::run_in_doubles;
+use immaculate::oracle::trace::{FORMAT, Trace};
+use immaculate::oracle::variant::catalogue;
+use serde_json::{Value, json};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+// Help
+
+#[test]
+fn every_command_has_help_with_its_options() {
+    for (arguments, words) in [
+        (
+            &["check"][..],
+            &[
+                "--answers",
+                "--case",
+                "--flag",
+                "--kind",
+                "--timeout",
+                "--json",
+                "Exit status: 0 all right, 1",
+            ][..],
+        ),
+        (&["trace"], &["--digits", "--json", "--csv", "standard input"]),
+        (&["cases"], &["list", "show", "copy", "verify", "schema", "write"]),
+        (&["cases", "list"], &["--case", "--flag", "--kind", "--json"]),
+        (&["cases", "show"], &["--json"]),
+        (&["cases", "copy"], &["--case", "long CSV"]),
+        (&["cases", "verify"], &["--case", "--json"]),
+        (&["cases", "schema"], &["problem", "trace"]),
+        (&["cases", "write"], &["--folder", "maintainers"]),
+        (&["variants"], &["--json"]),
+        (
+            &["answer"],
+            &["--plant", "--show", "everything", "posteriors", "combined"],
+        ),
+    ] {
+        let help = succeeds(&[arguments, &["--help"]].concat());
+        for word in words {
+            assert!(help.contains(word), "{arguments:?}: {word} in\n{help}");
+        }
+    }
+}
+
+// Traces
+
+#[test]
+fn a_trace_shows_every_value_with_its_equation() {
+    let text = succeeds(&["trace", "update.kalman"]);
+    assert!(
+        text.contains("step 1: z = [160.0, -35.0]") && text.contains("left turn"),
+        "{text}"
+    );
+    for quantity in Quantity::ALL {
+        let heading = format!("  {}  —  {}\n", quantity.name(), quantity.equation());
+        assert!(text.contains(&heading), "{heading}");
+    }
+    assert!(succeeds(&["trace", "missed.one"]).contains("no detection"));
+}
+
+/// Exact: JSON and CSV are the doubles of the library.
+#[test]
+fn a_trace_as_json_and_as_csv_is_that_of_the_library() {
+    for id in ["update.kalman", "missed.one", "step.n1-m1.two-modes"] {
+        let problem = &of(id).problem;
+        let (expected, failure) = run_in_doubles(problem).unwrap();
+        assert_eq!(failure, None);
+        let value = json_of(&["trace", id, "--json"]);
+        assert_eq!(value["format"], FORMAT);
+        assert_eq!(value["id"], id);
+        assert_eq!(value["error"], Value::Null);
+        assert_eq!(
+            Trace::from_json(&value["steps"], expected.dimensions),
+            Ok(expected.clone()),
+            "{id}"
+        );
+        let text = succeeds(&["trace", id, "--csv"]);
+        assert_eq!(csv::read(&text, id, expected.dimensions), Ok(expected), "{id}");
+    }
+}
+
+/// Exact: the published numbers are the doubles nearest to the decimals, of which there are as many as were asked for.
+#[test]
+fn certified_digits_round_to_the_published_numbers() {
+    for id in ["update.kalman", "missed.one"] {
+        let value = json_of(&["trace", id, "--digits", "30", "--json"]);
+        assert_eq!(value["digits"], 30);
+        let file = parsed(of(id).trace_text);
+        let (mut decimals, mut published) = (Vec::new(), Vec::new());
+        leaves(&value["steps"], &mut decimals);
+        leaves(&file["steps"], &mut published);
+        assert_eq!(decimals.len(), published.len());
+        assert!(decimals.len() > 50);
+        for (decimal, number) in decimals.iter().zip(&published) {
+            let Value::String(decimal) = decimal else {
+                // The number of the step.
+                assert_eq!(decimal, number);
+                continue;
+            };
+            let double: f64 = decimal.parse().unwrap();
+            assert_eq!(Some(double), number.as_f64(), "{id}: {decimal}");
+            let mantissa = decimal.split(['e', 'E']).next().unwrap();
+            let digits: String = mantissa.chars().filter(char::is_ascii_digit).collect();
+            assert!(
+                decimal == "0" || digits.trim_start_matches('0').len() == 30,
+                "{id}: {decimal}"
+            );
+        }
+    }
+    let text = succeeds(&["trace", "update.kalman", "--digits", "40"]);
+    assert!(text.contains("40 digits of every value, proven with "), "{text}");
+}
+
+#[test]
+fn a_problem_comes_from_a_file_or_from_standard_input() {
+    let folder = temporary("file");
+    std::fs::create_dir_all(&folder).unwrap();
+    let file = folder.join("my problem.json");
+    std::fs::write(&file, of("update.kalman").problem_text).unwrap();
+    let expected = succeeds(&["trace", "update.kalman"]);
+    assert_eq!(succeeds(&["trace", file.to_str().unwrap()]), expected);
+    let output = run_with(&["trace", "-"], of("update.kalman").problem_text.as_bytes());
+    assert!(output.status.success());
+    assert_eq!(String::from_utf8(output.stdout).unwrap(), expected);
+}
+
+#[test]
+fn a_run_that_stops_says_at_which_step() {
+    let mut problem = of("steps.kalman").problem.clone();
+    problem.measurements[1].z = Some(vec![1e200, -1e200]);
+    let text = json!(problem).to_string();
+    let output = run_with(&["trace", "-"], text.as_bytes());
+    assert!(output.status.success());
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(said.lines().last().unwrap().starts_with("step 2, "), "{said}");
+    let output = run_with(&["trace", "-", "--json"], text.as_bytes());
+    let value: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(value["error"].as_str().unwrap().starts_with("step 2, "), "{value}");
+    assert_eq!(value["steps"][0]["step"], 1);
+}
+
+#[test]
+fn a_bad_problem_file_is_named_with_the_place_inside() {
+    let folder = temporary("bad files");
+    std::fs::create_dir_all(&folder).unwrap();
+    let good = of("update.kalman").problem_text;
+    let bytes = |text: String| text.into_bytes();
+    for (name, content, words) in [
+        ("not json", bytes("{".into()), "problem: EOF while parsing"),
+        ("empty", Vec::new(), "problem: EOF while parsing"),
+        ("not text", vec![0xff, 0xfe, 0], "valid UTF-8"),
+        (
+            "a trace",
+            bytes(of("update.kalman").trace_text.into()),
+            "problem.steps: unknown field `steps`",
+        ),
+        (
+            "key",
+            bytes(good.replacen("\"R\"", "\"r\"", 1)),
+            "problem.r: unknown field `r`",
+        ),
+        (
+            "symmetry",
+            bytes(good.replacen("29.7]", "29.8]", 1)),
+            "problem.R: is not symmetric",
+        ),
+        (
+            "number",
+            bytes(good.replacen("25.0", "1e999", 1)),
+            "problem.modes[0].Q[0][0]: number out of range",
+        ),
+    ] {
+        let file = folder.join(name);
+        std::fs::write(&file, content).unwrap();
+        for more in [&[][..], &["--json"], &["--csv"], &["--digits", "20"]] {
+            let complaint = refuses(&[&["trace", file.to_str().unwrap()], more].concat(), 2);
+            assert!(
+                complaint.starts_with(&format!("immaculate: {}: ", file.display())),
+                "{complaint}"
+            );
+            assert!(complaint.contains(words), "{words} in {complaint}");
+            assert_eq!(complaint.lines().count(), 1, "{complaint}");
+        }
+    }
+    for (arguments, words) in [
+        (&["trace", "no.such.case"][..], "no.such.case: "),
+        (
+            &["trace", "rejected.shape.matrix"],
+            "rejected.shape.matrix: problem.modes[0].F[3]: has 3 entries where 4",
+        ),
+        (&["trace", folder.to_str().unwrap()], "directory"),
+        (&["trace"], "<FILE>"),
+        (&["trace", "update.kalman", "--digits", "0"], "'0'"),
+        (&["trace", "update.kalman", "--digits", "1001"], "'1001'"),
+        (&["trace", "update.kalman", "--csv", "--json"], "cannot be used with"),
+        (
+            &["trace", "update.kalman", "--csv", "--digits", "20"],
+            "cannot be used with",
+        ),
+    ] {
+        let complaint = refuses(arguments, 2);
+        assert!(complaint.contains(words), "{words} in {complaint}");
+    }
+}
+
+// Cases
+
+#[test]
+fn the_list_has_every_case_and_every_selection_its_own() {
+    let text = succeeds(&["cases", "list"]);
+    let listed = json_of(&["cases", "list", "--json"]);
+    let cases = listed["cases"].as_array().unwrap();
+    assert_eq!(cases.len(), all().len());
+    for (value, case) in cases.iter().zip(all()) {
+        let problem = &case.problem;
+        assert_eq!(value["id"], problem.id);
+        assert_eq!(value["modes"], problem.modes.len());
+        let class = match case.expected {
+            Expected::Rejection(class) => json!(class.name()),
+            Expected::Trace(_) => Value::Null,
+        };
+        assert_eq!(value["rejected"], class);
+        assert!(text.contains(&problem.id), "{}", problem.id);
+    }
+    assert!(text.contains(&format!("{} cases. The flags:", all().len())));
+    let ids = |selection: &[&str]| {
+        let value = json_of(&[&["cases", "list", "--json"], selection].concat());
+        let ids = value["cases"].as_array().unwrap().iter();
+        ids.map(|case| case["id"].as_str().unwrap().to_owned())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(ids(&["--case", "update.kalman"]), ["update.kalman"]);
+    let wrapped: Vec<String> = all()
+        .iter()
+        .filter(|case| case.problem.flags.contains(&"wrap".to_owned()) && case.problem.filter.name() == "cubature-5")
+        .map(|case| case.problem.id.clone())
+        .collect();
+    assert_eq!(ids(&["--flag", "wrap", "--kind", "cubature-5"]), wrapped);
+    for action in [&["list"][..], &["verify"], &["copy", "unused"]] {
+        for selection in [["--case", "no.such"], ["--flag", "no-such"], ["--kind", "no-such"]] {
+            let complaint = refuses(&[&["cases"], action, &selection].concat(), 2);
+            assert!(complaint.contains("no case has what was selected"), "{complaint}");
+        }
+    }
+}
+
+/// Exact: what is shown is what is published.
+#[test]
+fn a_case_is_shown_as_it_is_published() {
+    let case = of("update.kalman");
+    let text = succeeds(&["cases", "show", "update.kalman"]);
+    assert!(text.contains(case.problem_text) && text.contains(case.trace_text));
+    let value = json_of(&["cases", "show", "update.kalman", "--json"]);
+    assert_eq!(
+        value,
+        json!({ "problem": parsed(case.problem_text), "trace": parsed(case.trace_text) })
+    );
+    let complaint = refuses(&["cases", "show", "update"], 2);
+    assert!(complaint.contains("there is no case `update`"), "{complaint}");
+}
+
+/// Exact: what is copied is what is published.
+#[test]
+fn copied_cases_are_the_published_files() {
+    let folder = temporary("copy").join("made").join("on the way");
+    let text = succeeds(&[
+        "cases",
+        "copy",
+        folder.to_str().unwrap(),
+        "--case",
+        "update.kalman",
+        "--case",
+        "rejected.shape.matrix",
+    ]);
+    assert!(text.starts_with("2 cases, 5 files written to "), "{text}");
+    assert_eq!(
+        names(&folder),
+        [
+            "rejected.shape.matrix.problem.json",
+            "rejected.shape.matrix.trace.json",
+            "update.kalman.problem.json",
+            "update.kalman.trace.csv",
+            "update.kalman.trace.json",
+        ]
+    );
+    let read = |name: &str| std::fs::read_to_string(folder.join(name)).unwrap();
+    let case = of("update.kalman");
+    assert_eq!(read("update.kalman.problem.json"), case.problem_text);
+    assert_eq!(read("update.kalman.trace.json"), case.trace_text);
+    let Expected::Trace(trace) = &case.expected else {
+        panic!("a trace");
+    };
+    let long = read("update.kalman.trace.csv");
+    assert_eq!(csv::read(&long, "update.kalman", trace.dimensions).as_ref(), Ok(trace));
+    let head = format!("{},scale,noise", csv::HEADER);
+    assert_eq!(long.lines().next(), Some(head.as_str()));
+    for line in long.lines().skip(1) {
+        let fields: Vec<&str> = line.split(',').collect();
+        assert!(
+            fields.len() == 9 && fields[7..].iter().all(|number| number.parse::<f64>().unwrap() > 0.0),
+            "{line}"
+        );
+    }
+}
+
+#[test]
+fn nothing_is_written_when_copying_is_refused() {
+    let folder = temporary("not copied");
+    let place = folder.to_str().unwrap();
+    for selection in [&["--case", "no.such"][..], &["--flag", "no-such"], &["--colour", "red"]] {
+        refuses(&[&["cases", "copy", place], selection].concat(), 2);
+        assert!(!folder.exists(), "{selection:?}");
+    }
+    // A file where the folder should be, and a folder where a file should be.
+    std::fs::create_dir_all(folder.parent().unwrap()).unwrap();
+    std::fs::write(&folder, "in the way").unwrap();
+    let complaint = refuses(&["cases", "copy", place, "--case", "update.kalman"], 1);
+    assert!(complaint.contains(place), "{complaint}");
+    assert_eq!(std::fs::read_to_string(&folder).unwrap(), "in the way");
+    let folder = temporary("in the way");
+    std::fs::create_dir_all(folder.join("update.kalman.problem.json")).unwrap();
+    let complaint = refuses(
+        &["cases", "copy", folder.to_str().unwrap(), "--case", "update.kalman"],
+        1,
+    );
+    assert!(complaint.contains("update.kalman.problem.json"), "{complaint}");
+    assert_eq!(
+        names(&folder),
+        ["update.kalman.problem.json"],
+        "no part of a file is left"
+    );
+}
+
+#[test]
+fn verified_cases_are_counted() {
+    let text = succeeds(&["cases", "verify", "--case", "update.kalman", "--case", "rejected.shape"]);
+    assert!(
+        text.contains("4 of 4 cases proven again") && text.contains("rejected: shape"),
+        "{text}"
+    );
+    let value = json_of(&["cases", "verify", "--case", "update.kalman", "--json"]);
+    let case = &value["cases"][0];
+    assert_eq!(
+        (&case["id"], &case["proven"], &case["wrong"]),
+        (&json!("update.kalman"), &json!(true), &Value::Null)
+    );
+    assert!(
+        case["values"].as_u64().unwrap() > 100 && case["digits_left"].as_u64().unwrap() > 50,
+        "{case}"
+    );
+}
+
+/// Exact: what is printed is what is published.
+#[test]
+fn schemas_are_printed_as_they_are_published() {
+    for name in ["problem", "trace"] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("spec/schemas/{name}.schema.json"));
+        let published = std::fs::read_to_string(path).unwrap();
+        assert_eq!(succeeds(&["cases", "schema", name]), published);
+    }
+    assert!(refuses(&["cases", "schema", "answer"], 2).contains("[possible values: problem, trace]"));
+}
+
+// Writing cases
+
+/// A published case is never changed: neither its problem, nor its name after it was withdrawn.
+#[test]
+fn a_published_case_is_not_written_again() {
+    let lock = json!(case::lock().unwrap());
+    let place = lock["cases"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .position(|case| case["id"] == "update.kalman")
+        .unwrap();
+    let mut changed = lock.clone();
+    let digest = case::digest("another problem");
+    changed["cases"][place]["problem"] = json!(digest);
+    let mut withdrawn = lock.clone();
+    withdrawn["cases"][place]["withdrawn"] = json!("its purpose was another case's");
+    // One is new besides: it is not written either.
+    for lock in [&mut changed, &mut withdrawn] {
+        lock["cases"]
+            .as_array_mut()
+            .unwrap()
+            .retain(|case| case["id"] != "update.cubature-3");
+        let folder = with_lock("not written again", &lock.to_string());
+        let complaint = refuses(&["cases", "write", "--folder", folder.to_str().unwrap()], 2);
+        assert!(
+            complaint.contains("`update.kalman` is published and was changed or withdrawn"),
+            "{complaint}"
+        );
+        assert_eq!(names(&folder), ["lock.json"]);
+        assert_eq!(
+            std::fs::read_to_string(folder.join("lock.json")).unwrap(),
+            lock.to_string()
+        );
+    }
+}
+
+#[test]
+fn a_lock_that_cannot_be_read_is_named_and_nothing_is_written() {
+    for (lock, words) in [
+        ("", "EOF"),
+        ("{\"format\":\"immaculate-lock/1\"}", "missing field `cases`"),
+        ("{\"format\":\"immaculate-lock/2\",\"cases\":[]}", "immaculate-lock/2"),
+        (
+            "{\"format\":\"immaculate-lock/1\",\"cases\":[],\"colour\":1}",
+            "unknown field `colour`",
+        ),
+    ] {
+        let folder = with_lock("bad lock", lock);
+        let complaint = refuses(&["cases", "write", "--folder", folder.to_str().unwrap()], 2);
+        assert!(
+            complaint.contains("lock.json: ") && complaint.contains(words),
+            "{complaint}"
+        );
+        assert_eq!(names(&folder), ["lock.json"]);
+    }
+    let nowhere = temporary("no folder");
+    let complaint = refuses(&["cases", "write", "--folder", nowhere.to_str().unwrap()], 2);
+    assert!(complaint.contains("lock.json: ") && !nowhere.exists(), "{complaint}");
+}
+
+/// Exact: new cases are written as the published ones were, and the lock has them last.
+#[test]
+fn new_cases_are_written_and_locked() {
+    let mut lock = case::lock().unwrap();
+    let new = ["update.kalman", "rejected.shape.matrix"];
+    lock.cases.retain(|case| !new.contains(&case.id.as_str()));
+    let before = lock.cases.len();
+    let folder = with_lock("new", &json!(lock).to_string());
+    let write = ["cases", "write", "--folder", folder.to_str().unwrap()];
+    assert!(succeeds(&write).starts_with("2 cases written to "));
+    assert_eq!(names(&folder).len(), 5);
+    for id in new {
+        let read = |name: String| std::fs::read_to_string(folder.join(name)).unwrap();
+        assert_eq!(read(case::problem_name(id)), of(id).problem_text);
+        assert_eq!(read(case::trace_name(id)), of(id).trace_text);
+    }
+    let written: case::Lock =
+        serde_json::from_str(&std::fs::read_to_string(folder.join("lock.json")).unwrap()).unwrap();
+    assert_eq!(written.cases[..before], lock.cases);
+    assert_eq!([&written.cases[before].id, &written.cases[before + 1].id], new);
+    // Once more: nothing is new.
+    let text = std::fs::read_to_string(folder.join("lock.json")).unwrap();
+    assert!(succeeds(&write).starts_with("0 cases written to "));
+    assert_eq!(std::fs::read_to_string(folder.join("lock.json")).unwrap(), text);
+}
+
+// Variants and answers
+
+#[test]
+fn the_catalogue_is_listed_and_each_variant_shown_in_full() {
+    let text = succeeds(&["variants"]);
+    let value = json_of(&["variants", "--json"]);
+    let listed = value["variants"].as_array().unwrap();
+    assert_eq!(listed.len(), catalogue().len());
+    for (variant, listed) in catalogue().iter().zip(listed) {
+        assert_eq!(listed["id"], variant.id.as_str());
+        assert!(text.contains(&variant.id), "{}", variant.id);
+    }
+    let id = "mixed-spread-omitted";
+    let full = succeeds(&["variants", id]);
+    assert!(
+        full.starts_with(&format!("{id}  (")) && full.contains("what: "),
+        "{full}"
+    );
+    assert_eq!(json_of(&["variants", id, "--json"])["id"], id);
+    assert!(refuses(&["variants", "no-such"], 2).contains("there is no variant `no-such`"));
+}
+
+#[test]
+fn the_answering_side_says_what_it_does_not_understand() {
+    assert!(refuses(&["answer", "--plant", "no-such"], 2).contains("there is no variant `no-such`"));
+    for line in ["hello\n", "{}\n", "[]\n"] {
+        let output = run_with(&["answer"], line.as_bytes());
+        let complaint = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{complaint}");
+        assert!(
+            complaint.starts_with("immaculate: ") && output.stdout.is_empty(),
+            "{complaint}"
+        );
+    }
+    let output = run_with(
+        &["answer"],
+        b"{\"type\":\"start\"}\n{\"type\":\"stop\"}\nnot read any more\n",
+    );
+    assert!(output.status.success());
+    assert_eq!(String::from_utf8(output.stdout).unwrap().lines().count(), 1);
+    // The end of the input is an end, too.
+    assert!(run_with(&["answer"], b"").status.success());
+}
+
+// How the program is run
+
+fn all() -> &'static [Case] {
+    case::all().unwrap()
+}
+
+fn of(id: &str) -> &'static Case {
+    all().iter().find(|case| case.problem.id == id).unwrap()
+}
+
+fn parsed(text: &str) -> Value {
+    serde_json::from_str(text).unwrap()
+}
+
+fn immaculate(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_immaculate"));
+    command.args(arguments);
+    command
+}
+
+fn run(arguments: &[&str]) -> Output {
+    run_with(arguments, b"")
+}
+
+fn run_with(arguments: &[&str], input: &[u8]) -> Output {
+    let mut child = immaculate(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // A program that has read enough may be gone.
+    let _ = child.stdin.take().unwrap().write_all(input);
+    child.wait_with_output().unwrap()
+}
+
+fn succeeds(arguments: &[&str]) -> String {
+    let output = run(arguments);
+    let complaint = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        output.status.success() && complaint.is_empty(),
+        "{arguments:?}: {complaint}"
+    );
+    String::from_utf8(output.stdout).unwrap()
+}
+
+fn json_of(arguments: &[&str]) -> Value {
+    parsed(&succeeds(arguments))
+}
+
+/// The complaint of a command that fails with this status: it writes nothing else, and it is no panic.
+fn refuses(arguments: &[&str], status: i32) -> String {
+    let output = run(arguments);
+    let complaint = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(status), "{arguments:?}: {complaint}");
+    assert!(
+        output.stdout.is_empty() && !complaint.contains("panicked"),
+        "{arguments:?}: {complaint}"
+    );
+    complaint
+}
+
+/// A place of this test's own that does not exist yet.
+fn temporary(name: &str) -> PathBuf {
+    let place = PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
+        .join("command_line_oracle")
+        .join(name);
+    // What an earlier run left, if it left anything.
+    let _ = std::fs::remove_dir_all(&place);
+    let _ = std::fs::remove_file(&place);
+    place
+}
+
+/// A folder of cases in which there is nothing but a lock.
+fn with_lock(name: &str, lock: &str) -> PathBuf {
+    let folder = temporary(name);
+    std::fs::create_dir_all(&folder).unwrap();
+    std::fs::write(folder.join("lock.json"), lock).unwrap();
+    folder
+}
+
+/// The names of the files of a folder, in order.
+fn names(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).unwrap();
+    let mut names: Vec<String> = entries
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+/// The values of a JSON value that are neither lists nor objects, in their order.
+fn leaves<'a>(value: &'a Value, found: &mut Vec<&'a Value>) {
+    match value {
+        Value::Array(list) => list.iter().for_each(|value| leaves(value, found)),
+        Value::Object(object) => object.values().for_each(|value| leaves(value, found)),
+        leaf => found.push(leaf),
+    }
+}
