@@ -3,6 +3,8 @@
 //! Method: each `console` block is a command and an excerpt of its output; every line of the excerpt must occur in the output, in that
 //! order, spaces aside. The Rust block is run with the documentation's examples.
 
+use immaculate::oracle::case;
+use immaculate::oracle::variant::{Kind, catalogue};
 use std::process::Command;
 
 #[test]
@@ -20,11 +22,15 @@ fn the_commands_of_the_readme_print_what_it_shows() {
             assert_eq!(command, "$ cargo test", "an unknown command in the README");
             continue;
         };
-        let output = Command::new(env!("CARGO_BIN_EXE_immaculate"))
-            .args(arguments.split(' '))
+        let program = env!("CARGO_BIN_EXE_immaculate");
+        let own_name = |argument| if argument == "immaculate" { program } else { argument };
+        let output = Command::new(program)
+            .args(arguments.split(' ').map(own_name))
             .output()
             .unwrap();
-        assert!(output.status.success());
+        // A check that finds something wrong ends with 1.
+        let expected = i32::from(arguments.contains("--plant"));
+        assert_eq!(output.status.code(), Some(expected));
         let output = String::from_utf8(output.stdout).unwrap();
         let mut printed = output.lines().map(without_spaces);
         for line in lines.filter(|line| !line.trim().is_empty()) {
@@ -41,4 +47,19 @@ fn the_commands_of_the_readme_print_what_it_shows() {
 
 fn without_spaces(line: &str) -> String {
     line.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn the_numbers_of_cases_and_variants_in_the_readme_are_those_of_the_catalogues() {
+    let readme = include_str!("../README.md").split_whitespace().collect::<Vec<_>>().join(" ");
+    let count = |kind| catalogue().iter().filter(|variant| variant.kind == kind).count();
+    let (mistakes, conventions, forms) = (count(Kind::Mistake), count(Kind::Convention), count(Kind::Form));
+    let cases = case::all().unwrap().len();
+    for sentence in [
+        format!("{mistakes} mistakes, {conventions} conventions and {forms} forms"),
+        format!("the {cases} certified cases"),
+        format!("Of {} mistakes and conventions", mistakes + conventions),
+    ] {
+        assert!(readme.contains(&sentence), "the README does not say: {sentence}");
+    }
 }
