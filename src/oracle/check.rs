@@ -132,6 +132,8 @@ pub struct CaseReport {
     pub of: usize,
     /// The digits that the worst of the values that are right has, in its scale.
     pub digits: Option<f64>,
+    /// Why the program stopped before the end, if it did.
+    pub stopped: Option<String>,
 }
 
 impl CaseReport {
@@ -162,9 +164,10 @@ pub struct Report {
 }
 
 impl Report {
-    /// Whether all faults are those of a form or a convention, which are not wrong.
+    /// Whether all faults are those of a form or a convention, which are not wrong. They do not excuse an early end.
     pub fn is_excused(&self) -> bool {
-        self.diagnosis.is_excuse()
+        let is_early = |case: &CaseReport| case.outcome == Outcome::Wrong && case.stopped.is_some();
+        self.diagnosis.is_excuse() && !self.cases.iter().any(is_early)
     }
 
     /// Whether nothing could be judged at all.
@@ -310,6 +313,7 @@ fn judge_answer(case: &Case, answer: Answer, ready: &Ready, conventions: &[&str]
         judged: 0,
         of: 0,
         digits: None,
+        stopped: None,
     };
     let expected = match &case.expected {
         Expected::Trace(trace) => trace,
@@ -413,6 +417,7 @@ fn summarise(report: &mut CaseReport, judgement: &Judgement, error: Option<Strin
         .filter(|value| value.finding == Finding::Right)
         .map(|value| -value.error.max(f64::EPSILON / 2.0).log10())
         .reduce(f64::min);
+    report.stopped.clone_from(&error);
     report.outcome = if findings().any(|finding| matches!(finding, Finding::Fault | Finding::NotFinite)) {
         Outcome::Wrong
     } else if let Some(reason) = error.filter(|_| !is_drowned) {

@@ -45,8 +45,8 @@ fn words(outcome: &Outcome) -> &'static str {
 }
 
 /// The reason that an outcome carries.
-fn reason(outcome: &Outcome) -> Option<String> {
-    match outcome {
+fn reason(case: &CaseReport) -> Option<String> {
+    match &case.outcome {
         Outcome::Rejected {
             other_class: Some(class),
         } => Some(format!("for another reason: {class:?}")),
@@ -54,6 +54,10 @@ fn reason(outcome: &Outcome) -> Option<String> {
             Some(reason.clone())
         }
         Outcome::Broken(broken) => Some(broken.to_string()),
+        Outcome::Wrong => Some(format!(
+            "the program stopped before the end: {}",
+            case.stopped.as_ref()?
+        )),
         Outcome::NotRejected => Some("the problem is wrong and was run all the same".into()),
         _ => None,
     }
@@ -73,7 +77,7 @@ fn cases(report: &Report) -> String {
     }
     let mut text = format!("{table}\n");
     for case in &report.cases {
-        if let Some(reason) = reason(&case.outcome) {
+        if let Some(reason) = reason(case) {
             // What a program writes keeps its lines.
             let mut lines = reason.lines();
             let first = lines.next().unwrap_or_default();
@@ -382,7 +386,7 @@ pub fn json(report: &Report) -> Value {
             json!({
                 "id": case.id,
                 "verdict": words(&case.outcome).to_lowercase(),
-                "reason": reason(&case.outcome),
+                "reason": reason(case),
                 "wrong": case.outcome.is_wrong(),
                 "judged": case.judged,
                 "of": case.of,
