@@ -397,10 +397,18 @@ fn an_answer_with_wild_numbers_is_judged() {
         let case = judge::Case { problem, shown: &shown, reference, precision: Precision::Double };
         let judgement = case.judge(&[]).unwrap();
         prop_assert!(start.elapsed() < PATIENCE, "{:?}", start.elapsed());
+        // The first value that is not finite is found; those after it may come of it.
+        let mut was_finite = true;
         for judged in &judgement.values {
             let (step, quantity, mode) = judged.place;
             let is_finite = shown.get(step, quantity, mode).unwrap().iter().all(|value| value.is_finite());
-            prop_assert_eq!(judged.finding == Finding::NotFinite, !is_finite, "{:?}", judged);
+            let expected: &[Finding] = match (is_finite, was_finite) {
+                (true, _) => &[Finding::Right, Finding::Propagated, Finding::CannotTell, Finding::Undetermined, Finding::Fault],
+                (false, true) => &[Finding::NotFinite],
+                (false, false) => &[Finding::NotFinite, Finding::Propagated],
+            };
+            prop_assert!(expected.contains(&judged.finding), "{:?}", judged);
+            was_finite &= is_finite;
         }
     });
 }
@@ -592,7 +600,7 @@ fn the_memory_is_bounded() {
             "{flood}: {said} {}",
             String::from_utf8_lossy(&output.stderr)
         );
-        assert!(said.contains("NO ANSWER"), "{flood}: {said}");
+        assert!(said.contains("0 of 19"), "{flood}: {said}");
     }
 }
 
