@@ -271,7 +271,7 @@ fn an_imm_filter_without_a_part_of_its_equations_is_rejected() {
         ("range and bearing", &polar, Equations::cubature(), RANGE_BEARING),
     ] {
         let of_right = experiment(model, model, &right, RUNS);
-        for (name, telling, equations) in variants(right) {
+        for (name, telling, equations) in variants(&right) {
             let outcomes = experiment(model, model, &equations, RUNS);
             let mut found = figures(&outcomes, allowed);
             // The probabilities of a posterior have the least expected Brier score there is, on the same draws.
@@ -289,14 +289,14 @@ fn an_imm_filter_without_a_part_of_its_equations_is_rejected() {
 }
 
 /// Tables with an equation exchanged, and the figure that tells.
-fn variants(right: Table) -> [(&'static str, &'static str, Table); 5] {
+fn variants(right: &Table) -> [(&'static str, &'static str, Table); 5] {
     [
         (
             "mixed without the spread of the means",
             "NEES",
             Equations {
                 mixed_covariance: |_, previous, now, j| without_spread(&now.mixing_probabilities[j], &previous.updated),
-                ..right
+                ..*right
             },
         ),
         (
@@ -304,7 +304,7 @@ fn variants(right: Table) -> [(&'static str, &'static str, Table); 5] {
             "NEES",
             Equations {
                 combined_covariance: |_, _, now| without_spread(&now.mode_probabilities, &now.updated),
-                ..right
+                ..*right
             },
         ),
         (
@@ -312,7 +312,7 @@ fn variants(right: Table) -> [(&'static str, &'static str, Table); 5] {
             "NEES",
             Equations {
                 mixing_probability: |_, _, _, j, i| f64::from(i == j),
-                ..right
+                ..*right
             },
         ),
         (
@@ -323,7 +323,7 @@ fn variants(right: Table) -> [(&'static str, &'static str, Table); 5] {
                 log_likelihood: |_, _, now, j| {
                     quadratic_form(&ldl(&now.innovation_covariances[j]), &now.innovations[j]) / -2.0
                 },
-                ..right
+                ..*right
             },
         ),
         (
@@ -334,7 +334,7 @@ fn variants(right: Table) -> [(&'static str, &'static str, Table); 5] {
                 log_likelihood: |_, _, now, j| {
                     log_density_21(&now.innovations[j], &ldl(&now.innovation_covariances[j]))
                 },
-                ..right
+                ..*right
             },
         ),
     ]

@@ -305,7 +305,7 @@ fn every_accepted_problem_runs() {
     proptest!(config(4000, 6), |((id, changes) in wild)| {
         let mut problem = of(id).problem.clone();
         for (what, at, number) in changes {
-            change(&mut problem, what, &at, number);
+            change(&mut problem, what, at, number);
         }
         let text = json!(problem).to_string();
         let start = Instant::now();
@@ -331,7 +331,7 @@ fn every_accepted_problem_runs() {
 }
 
 /// One number, or one covariance as a whole.
-fn change(problem: &mut ProblemFile, what: usize, at: &Index, number: f64) {
+fn change(problem: &mut ProblemFile, what: usize, at: Index, number: f64) {
     let scale = |rows: &mut Vec<Vec<f64>>| rows.iter_mut().flatten().for_each(|entry| *entry *= number.abs());
     let modes = problem.modes.len();
     let mode = at.index(modes);
@@ -391,7 +391,7 @@ fn an_answer_with_wild_numbers_is_judged() {
             shown.set(step, quantity, mode, value);
         }
         if hides {
-            shown = without(&shown, changes[0].1.get(&Quantity::ALL));
+            shown = without(&shown, *changes[0].1.get(&Quantity::ALL));
         }
         let start = Instant::now();
         let case = judge::Case { problem, shown: &shown, reference, precision: Precision::Double };
@@ -685,9 +685,9 @@ fn text_of(id: &str) -> &'static str {
 }
 
 /// A trace in which a quantity is not shown.
-fn without(trace: &Trace, hidden: &Quantity) -> Trace {
+fn without(trace: &Trace, hidden: Quantity) -> Trace {
     let mut shown = Trace::empty(trace.dimensions);
-    for (step, quantity, mode) in trace.all_places().filter(|place| place.1 != *hidden) {
+    for (step, quantity, mode) in trace.all_places().filter(|place| place.1 != hidden) {
         if let Some(value) = trace.get(step, quantity, mode) {
             shown.set(step, quantity, mode, value.clone());
         }

@@ -12,8 +12,8 @@ use immaculate::model::motion::Mode;
 use nalgebra::{Matrix2, Matrix4x2, Vector2};
 
 /// The first step that cannot be computed, or whose covariances are not symmetric positive definite.
-fn first_failure(scene: &Scene, equations: Equations<f64, 4, 2>, steps: usize) -> Option<usize> {
-    let mut filter = Imm::new(scene.problem.clone(), equations, &scene.initial).unwrap();
+fn first_failure(scene: &Scene, equations: &Equations<f64, 4, 2>, steps: usize) -> Option<usize> {
+    let mut filter = Imm::new(scene.problem.clone(), *equations, &scene.initial).unwrap();
     for k in 1..=steps {
         let time = k as f64;
         let z = Vector2::new(15000.0 - 180.0 * time, 1000.0 + 200.0 * time);
@@ -45,10 +45,10 @@ fn long_scene() -> Scene {
 
 #[test]
 fn a_long_run_keeps_every_covariance_symmetric_and_positive_definite() {
-    assert_eq!(first_failure(&long_scene(), Equations::kalman(), 100_000), None);
+    assert_eq!(first_failure(&long_scene(), &Equations::kalman(), 100_000), None);
     for rule in RULES {
         let scene = linear_scene_with(rule);
-        assert_eq!(first_failure(&scene, Equations::cubature(), 10_000), None, "{rule}");
+        assert_eq!(first_failure(&scene, &Equations::cubature(), 10_000), None, "{rule}");
     }
 }
 

@@ -12,6 +12,7 @@ use immaculate::model::angle::wrap;
 use immaculate::model::motion::{constant_velocity, coordinated_turn};
 use immaculate::model::{Measurement, PolarComponent};
 use immaculate::number::{Field, Rational, Real, Roots, Surd};
+use immaculate::rule::unscented::{Parameters, unscented, unscented_in};
 use immaculate::rule::{Rule, RuleName};
 use nalgebra::{SMatrix, SVector, Vector3, vector};
 use num_traits::Zero;
@@ -715,5 +716,40 @@ fn range_bearing(sensor: [f64; 2]) -> Measurement<f64, 4, 2> {
         components: [PolarComponent::Range, PolarComponent::Bearing],
         position: [0, 2],
         sensor,
+    }
+}
+
+#[test]
+fn the_unscented_rule_of_doubles_is_the_exact_one_rounded() {
+    // Parameters that are dyadic: the exact rule has the same ones. One operation after the other is rounded, so a few units in the last
+    // place of the greatest number in each sum are allowed.
+    for (alpha, beta, kappa) in [
+        ((1, 1), (0, 1), (-1, 1)),
+        ((1, 2), (2, 1), (0, 1)),
+        ((3, 4), (1, 2), (5, 2)),
+    ] {
+        let exact_number = |(p, q): (i64, i64)| Rational::new(p, q);
+        let parameters = Parameters {
+            alpha: exact_number(alpha),
+            beta: exact_number(beta),
+            kappa: exact_number(kappa),
+        };
+        let exact = Rule::<f64, 4>::from_exact(&unscented(4, &parameters).unwrap()).unwrap();
+        let double = |(p, q): (i64, i64)| f64::ratio(p, q);
+        let rounded = unscented_in::<f64, 4>(&double(alpha), &double(beta), &double(kappa)).unwrap();
+        assert_eq!(exact.points.len(), rounded.points.len());
+        let near = |a: f64, b: f64| (a - b).abs() <= 8.0 * f64::EPSILON * a.abs().max(1.0);
+        for (exact, rounded) in exact.points.iter().zip(&rounded.points) {
+            assert!(
+                exact.iter().zip(rounded).all(|(&a, &b)| near(a, b)),
+                "{exact} {rounded}"
+            );
+        }
+        let weights = exact.weights.iter().zip(&rounded.weights);
+        let covariance_weights = exact.covariance_weights.iter().zip(&rounded.covariance_weights);
+        assert!(
+            weights.chain(covariance_weights).all(|(&a, &b)| near(a, b)),
+            "{alpha:?}"
+        );
     }
 }

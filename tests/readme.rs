@@ -51,7 +51,10 @@ fn without_spaces(line: &str) -> String {
 
 #[test]
 fn the_numbers_of_cases_and_variants_in_the_readme_are_those_of_the_catalogues() {
-    let readme = include_str!("../README.md").split_whitespace().collect::<Vec<_>>().join(" ");
+    let readme = include_str!("../README.md")
+        .split_whitespace()
+        .collect::<Vec<_>>()
+        .join(" ");
     let count = |kind| catalogue().iter().filter(|variant| variant.kind == kind).count();
     let (mistakes, conventions, forms) = (count(Kind::Mistake), count(Kind::Convention), count(Kind::Form));
     let cases = case::all().unwrap().len();

@@ -346,7 +346,7 @@ fn varied<const N: usize, const M: usize>(mut setup: Setup<f64, N, M>, ids: &[&s
 
 fn scenes() -> Vec<Scene> {
     let mut other_order = polar("cubature-3");
-    let scaled = unscented_in(0.5, 2.0, 0.0).unwrap();
+    let scaled = unscented_in(&0.5, &2.0, &0.0).unwrap();
     if let Measurement::Polar { components, .. } = &mut other_order.problem.measurement {
         components.reverse();
     }

@@ -52,7 +52,8 @@ pub fn run(arguments: &Trace) -> Result<Done, Refusal> {
         let texts = values.map(|_, numbers| numbers.iter().map(|number| format!("{number:?}")).collect());
         let mut text = report::trace::text(&problem, &texts);
         if let Some(failure) = failure {
-            text.push_str(&format!("{failure}\n"));
+            text.push_str(&failure);
+            text.push('\n');
         }
         return Ok(text.into());
     };
@@ -63,7 +64,6 @@ pub fn run(arguments: &Trace) -> Result<Done, Refusal> {
         let value = json!({ "format": FORMAT, "id": problem.id, "digits": digits, "bits": bits, "steps": steps });
         return Ok(json_text(&value).into());
     }
-    let mut text = report::trace::text(&problem, &decimals);
-    text.push_str(&format!("{digits} digits of every value, proven with {bits} bits\n"));
-    Ok(text.into())
+    let text = report::trace::text(&problem, &decimals);
+    Ok(format!("{text}{digits} digits of every value, proven with {bits} bits\n").into())
 }

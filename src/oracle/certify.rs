@@ -125,7 +125,7 @@ impl Work for Attempt<'_> {
 /// The first value that is not narrow enough.
 fn nearest(values: &Table<Vec<Enclosure>>) -> Result<(Trace, u32), String> {
     // The middles serve for the scales, which need two digits.
-    let about = scales(&values.map(|_, numbers| numbers.iter().map(|number| number.middle()).collect()));
+    let about = scales(&values.map(|_, numbers| numbers.iter().map(Enclosure::middle).collect()));
     let mut trace = Trace::empty(values.dimensions);
     let mut widest = 0.0_f64;
     for (step, quantity, mode) in values.all_places() {
@@ -161,7 +161,7 @@ fn nearest_double(number: &Enclosure, scale: f64) -> Option<f64> {
         return Some(double);
     }
     let (below, above) = (number.lower().to_f64(), number.upper().to_f64());
-    let is_tie = number.width() <= POINT * scale && below.next_up() == above;
+    let is_tie = number.width() <= POINT * scale && below.next_up().to_bits() == above.to_bits();
     is_tie.then_some(if below.to_bits() % 2 == 0 { below } else { above })
 }
 

@@ -171,26 +171,11 @@ impl<'a> Search<'a> {
         if self.evidence.iter().all(|evidence| !evidence.is_faulty) {
             return Ok(Some(Diagnosis::Nothing));
         }
-        let found = self.filter(&self.candidates, |variant| self.explains(&[variant]))?;
+        let found = filter(&self.candidates, |variant| self.explains(&[variant]))?;
         match gentlest(&found) {
             Some(best) => Ok(Some(Diagnosis::One(best))),
             None => self.equation_by_equation(),
         }
-    }
-
-    /// The candidates of which something is true, found on all cores.
-    fn filter(
-        &self,
-        candidates: &[&'static Variant],
-        is_true: impl Fn(&'static Variant) -> Result<bool, Invalid> + Sync,
-    ) -> Result<Vec<&'static Variant>, Invalid> {
-        let found: Result<Vec<bool>, Invalid> = candidates.par_iter().map(|variant| is_true(variant)).collect();
-        Ok(candidates
-            .iter()
-            .zip(found?)
-            .filter(|(_, found)| *found)
-            .map(|(variant, _)| *variant)
-            .collect())
     }
 
     /// For the first equation that is not explained, in the order of computation, a variant that is made in it; then for the next.
@@ -207,7 +192,7 @@ impl<'a> Search<'a> {
                 .copied()
                 .filter(|variant| variant.quantity == quantity)
                 .collect();
-            let found = self.filter(&made_here, |variant| {
+            let found = filter(&made_here, |variant| {
                 let mut with = chosen.clone();
                 with.push(variant);
                 self.explains_quantity(&with, quantity)
@@ -220,7 +205,7 @@ impl<'a> Search<'a> {
         }
         // The first of each may fail where another explains the equations after it, too.
         for place in 0..chosen.len() {
-            let others = self.filter(&alternatives[place], |variant| {
+            let others = filter(&alternatives[place], |variant| {
                 let mut with = chosen.clone();
                 with[place] = variant;
                 self.explains(&with)
@@ -292,6 +277,16 @@ impl<'a> Search<'a> {
             of: faulty.len(),
         })
     }
+}
+
+/// The candidates of which something is true, found on all cores.
+fn filter(
+    candidates: &[&'static Variant],
+    is_true: impl Fn(&'static Variant) -> Result<bool, Invalid> + Sync,
+) -> Result<Vec<&'static Variant>, Invalid> {
+    let found: Result<Vec<bool>, Invalid> = candidates.par_iter().map(|variant| is_true(variant)).collect();
+    let found = candidates.iter().zip(found?).filter(|(_, found)| *found);
+    Ok(found.map(|(variant, _)| *variant).collect())
 }
 
 /// The variants of the gentlest kind among those found.

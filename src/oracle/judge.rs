@@ -376,9 +376,9 @@ impl Case<'_> {
     ///
     /// [`Invalid`] for a problem that cannot be set up.
     pub fn is_explained_by(&self, variants: &[&str], passed: &BTreeSet<Place>) -> Result<bool, Invalid> {
-        let is_asked = |place: &Place| !passed.contains(place);
         // Most variants are far off, which two runs show: their spread is hardly ever a thousandth of what eight would give.
         const FAR: f64 = 1e6;
+        let is_asked = |place: &Place| !passed.contains(place);
         Ok(self.is_within(FAR, 2, variants, &is_asked)? && self.is_within(LIMIT, noise::RUNS, variants, &is_asked)?)
     }
 

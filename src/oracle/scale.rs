@@ -42,8 +42,11 @@ fn scale(trace: &Trace, step: usize, quantity: Quantity, mode: usize, values: &[
         Q::CombinedPredictionMean => deviations(Q::CombinedPredictionCovariance, n),
         Q::UpdatedMean => deviations(Q::UpdatedCovariance, n),
         Q::CombinedMean => deviations(Q::CombinedCovariance, n),
-        Q::MixedCovariance | Q::PredictedCovariance | Q::CombinedPredictionCovariance => square(quantity, n),
-        Q::UpdatedCovariance | Q::CombinedCovariance => square(quantity, n),
+        Q::MixedCovariance
+        | Q::PredictedCovariance
+        | Q::CombinedPredictionCovariance
+        | Q::UpdatedCovariance
+        | Q::CombinedCovariance => square(quantity, n),
         Q::PredictedMeasurement | Q::Innovation => deviations(Q::InnovationCovariance, m),
         Q::InnovationCovariance => square(quantity, m),
         Q::CrossCovariance => outer(

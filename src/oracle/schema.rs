@@ -64,14 +64,14 @@ fn by_rank(quantity: Quantity, number: &Value) -> Value {
 fn step(leaf: &dyn Fn(Quantity) -> Value) -> Value {
     let mut of_all = properties(false, leaf);
     of_all.insert("step".into(), json!({ "type": "integer", "minimum": 1 }));
-    let modes = json!({ "type": "array", "items": object(properties(true, leaf)) });
+    let modes = json!({ "type": "array", "items": object(&properties(true, leaf)) });
     of_all.insert("modes".into(), modes);
-    let mut schema = object(of_all);
+    let mut schema = object(&of_all);
     schema["required"] = json!(["step"]);
     schema
 }
 
-fn object(properties: Map<String, Value>) -> Value {
+fn object(properties: &Map<String, Value>) -> Value {
     json!({ "type": "object", "properties": properties, "additionalProperties": false })
 }
 
@@ -89,7 +89,7 @@ fn properties(is_of_mode: bool, leaf: &dyn Fn(Quantity) -> Value) -> Map<String,
                 properties.insert(quantity.name().to_owned(), value);
             }
             Some((outer, inner)) => {
-                let nested = properties.entry(outer).or_insert_with(|| object(Map::new()));
+                let nested = properties.entry(outer).or_insert_with(|| object(&Map::new()));
                 nested["properties"][inner] = value;
             }
         }

@@ -117,13 +117,12 @@ impl ProblemFile {
     pub fn setup_in_doubles<const N: usize, const M: usize>(&self) -> Result<Setup<f64, N, M>, Invalid> {
         let name = format!("{:?} {N}", self.filter);
         let mut rules = RULES.lock().unwrap_or_else(PoisonError::into_inner);
-        let rule = match rules.get(&name) {
-            Some(columns) => columns.as_ref().map(of_columns),
-            None => {
-                let rule = self.rule(|value| value)?;
-                rules.insert(name, rule.as_ref().map(as_columns));
-                rule
-            }
+        let rule = if let Some(columns) = rules.get(&name) {
+            columns.as_ref().map(of_columns)
+        } else {
+            let rule = self.rule(|value| value)?;
+            rules.insert(name, rule.as_ref().map(as_columns));
+            rule
         };
         drop(rules);
         self.setup_with_rule(|value| value, rule)
@@ -210,7 +209,7 @@ impl ProblemFile {
             ),
             FilterFile::Unscented { alpha, beta, kappa } => (
                 "problem.filter",
-                unscented::unscented_in(number(*alpha), number(*beta), number(*kappa)),
+                unscented::unscented_in(&number(*alpha), &number(*beta), &number(*kappa)),
             ),
         };
         rule.map(Some)

@@ -91,7 +91,10 @@ impl Ready {
             match key.as_str() {
                 _ if value.is_null() => {}
                 "type" | "fields" => {}
-                "name" => ready.name = value.as_str().ok_or("`name` is not a string")?.to_owned(),
+                "name" => value
+                    .as_str()
+                    .ok_or("`name` is not a string")?
+                    .clone_into(&mut ready.name),
                 "precision" => ready.precision = read_precision(value)?,
                 "conventions" => ready.conventions = read_conventions(value)?,
                 "kinds" => {

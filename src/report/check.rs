@@ -317,7 +317,7 @@ fn coverage(report: &Report) -> String {
     }
     match report.echo {
         None => {
-            text.push_str("  The program gave no echo: whether it reads matrices by rows is seen by the cases only.\n")
+            text.push_str("  The program gave no echo: whether it reads matrices by rows is seen by the cases only.\n");
         }
         Some(true) => {}
         Some(false) => text.push_str(

@@ -128,9 +128,9 @@ pub fn unscented(n: usize, parameters: &Parameters) -> Result<ExactRule, Invalid
 /// [`InvalidRule::Radius`] when n + λ is not positive.
 ///
 /// Evidence: `the_unscented_rule_of_doubles_is_the_exact_one_rounded`.
-pub fn unscented_in<T: Real, const N: usize>(alpha: T, beta: T, kappa: T) -> Result<Rule<T, N>, InvalidRule> {
+pub fn unscented_in<T: Real, const N: usize>(alpha: &T, beta: &T, kappa: &T) -> Result<Rule<T, N>, InvalidRule> {
     let n = T::integer(i64::try_from(N).unwrap_or(i64::MAX));
-    let lambda = lambda(&n, &alpha, &kappa);
+    let lambda = lambda(&n, alpha, kappa);
     let radius_squared = n.clone() + lambda.clone();
     if radius_squared.partial_cmp(&T::zero()) != Some(Ordering::Greater) {
         return Err(InvalidRule::Radius {
@@ -149,7 +149,7 @@ pub fn unscented_in<T: Real, const N: usize>(alpha: T, beta: T, kappa: T) -> Res
     let mut weights = vec![axis_weight(&n, &lambda); points.len()];
     weights[0] = centre_weight(&n, &lambda);
     let mut covariance_weights = weights.clone();
-    covariance_weights[0] = centre_covariance_weight(&weights[0], &alpha, &beta);
+    covariance_weights[0] = centre_covariance_weight(&weights[0], alpha, beta);
     Ok(Rule {
         points,
         weights,

@@ -80,16 +80,16 @@ python_filters() {
     fi
     local numpy=("$python" "$adapters/numpy_imm.py")
 
-    expect 0 "RIGHT numpy example, double precision" -- -- "${numpy[@]}"
-    expect 0 "RIGHT numpy example, single precision" -- -- "${numpy[@]}" --single
-    for form in joseph inverse; do
-        expect 0 "RIGHT numpy example, double precision" -- -- "${numpy[@]}" --form "$form"
+    expect 0 "RIGHT: numpy example, double precision" -- -- "${numpy[@]}"
+    expect 0 "RIGHT: numpy example, single precision" -- -- "${numpy[@]}" --single
+    for form in joseph inverse information; do
+        expect 0 "RIGHT: numpy example, double precision" -- -- "${numpy[@]}" --form "$form"
     done
     for convention in angle_mean=vector square_root=cholesky-upper first_step=unmixed log_likelihood=without-two-pi; do
-        expect 0 "RIGHT numpy example, double precision" -- -- "${numpy[@]}" --convention "$convention"
+        expect 0 "RIGHT: numpy example, double precision" -- -- "${numpy[@]}" --convention "$convention"
     done
     for level in posteriors combined; do
-        expect 0 "RIGHT numpy example, double precision" "Never shown:" -- -- "${numpy[@]}" --show "$level"
+        expect 0 "RIGHT: numpy example, double precision" "Never shown:" -- -- "${numpy[@]}" --show "$level"
     done
 
     # A mistake, and the equation in which it is made.
@@ -133,9 +133,9 @@ filterpy() {
     local combined="(prediction-combined-with-old-probabilities; mistake)" stale="(points-not-drawn-afresh; mistake)"
 
     # What is right is right; the prediction is combined with the probabilities of the step before.
-    expect 0 "RIGHT FilterPy" -- --case likelihood --case update --case steps.one -- "$@" kalman
+    expect 0 "RIGHT: FilterPy" -- --case likelihood --case update --case steps.one -- "$@" kalman
     expect 1 "FAULT combined_prediction.mean" "MOST LIKELY" "$combined" -- --case mixing --case step --case far --case units -- "$@" kalman
-    expect 0 "RIGHT FilterPy" -- --case update --case rule -- "$@" unscented
+    expect 0 "RIGHT: FilterPy" -- --case update --case rule -- "$@" unscented
     expect 1 "FAULT combined_prediction.mean" "MOST LIKELY" "$combined" -- -- "$@" unscented
     # Without a detection the probabilities are updated all the same; likelihoods underflow; a mode that cannot be reached is NaN.
     expect 1 "FAULT mode_probabilities" -- --case missed.one -- "$@" kalman
@@ -158,7 +158,7 @@ octave_filter() {
     immaculate cases copy "$work/problems" >/dev/null
     octave-cli --no-init-file --eval "addpath('$adapters'); octave_imm('$work/problems', '$work/answers')" >"$work/octave" 2>&1 ||
         cat "$work/octave"
-    expect 0 "RIGHT Octave example, double precision" -- --answers "$work/answers"
+    expect 0 "RIGHT: Octave example, double precision" -- --answers "$work/answers"
 }
 
 cpp_filter() {
@@ -167,7 +167,7 @@ cpp_filter() {
         return
     fi
     g++ -std=c++17 -O2 -Wall -Wextra -Werror -I /usr/include/eigen3 -o "$work/imm" "$adapters/cpp/main.cpp"
-    expect 0 "RIGHT C++ example, double precision" -- -- "$work/imm"
+    expect 0 "RIGHT: C++ example, double precision" -- -- "$work/imm"
 }
 
 python_filters
