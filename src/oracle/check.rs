@@ -331,25 +331,13 @@ fn judge_answer(case: &Case, answer: Answer, ready: &Ready, conventions: &[&str]
         }
     };
     report.of = expected.count();
-    let (shown, error) = match answer {
-        Answer::Steps { trace, error } => (trace, error),
-        Answer::Skipped { reason } => {
-            report.outcome = Outcome::Skipped { reason };
-            return Ok((report, None));
-        }
-        Answer::Rejected { reason, .. } => {
-            report.outcome = Outcome::WronglyRejected { reason };
-            return Ok((report, None));
-        }
-        Answer::Broken(broken) => {
-            report.outcome = Outcome::Broken(broken);
+    let (shown, error) = match shown_by(answer, report.dimensions) {
+        Ok(shown) => shown,
+        Err(outcome) => {
+            report.outcome = outcome;
             return Ok((report, None));
         }
     };
-    if let Err(invalid) = shown.check(report.dimensions) {
-        report.outcome = Outcome::Broken(Broken::Invalid(invalid));
-        return Ok((report, None));
-    }
     let reference = reference_of(case, expected, conventions, ready.precision)?;
     let judgement = judge::Case {
         problem: &case.problem,
@@ -362,6 +350,19 @@ fn judge_answer(case: &Case, answer: Answer, ready: &Ready, conventions: &[&str]
     summarise(&mut report, &judgement, error, is_drowned);
     report.judgement = Some(judgement);
     Ok((report, Some((shown, reference))))
+}
+
+/// What an answer to a good problem shows, with the error if it stopped; or the outcome where there is nothing to be judged.
+fn shown_by(answer: Answer, dimensions: Dimensions) -> Result<(Trace, Option<String>), Outcome> {
+    match answer {
+        Answer::Steps { trace, error } => match trace.check(dimensions) {
+            Ok(()) => Ok((trace, error)),
+            Err(invalid) => Err(Outcome::Broken(Broken::Invalid(invalid))),
+        },
+        Answer::Skipped { reason } => Err(Outcome::Skipped { reason }),
+        Answer::Rejected { reason, .. } => Err(Outcome::WronglyRejected { reason }),
+        Answer::Broken(broken) => Err(Outcome::Broken(broken)),
+    }
 }
 
 /// The references of cases that were asked for before, by id and unit roundoff.
