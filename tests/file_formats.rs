@@ -181,7 +181,7 @@ fn every_class_of_refusal_has_a_defect_in_the_tables() {
     }
 }
 
-#[allow(clippy::too_many_lines, reason = "a table, one entry a defect")]
+#[allow(clippy::too_many_lines, reason = "a table")]
 fn wrong_shapes() -> Vec<Defect> {
     let row = || json!([1.0, 2.0, 3.0]);
     let three = "has 3 entries where 4 are needed";
@@ -370,7 +370,7 @@ fn wrong_shapes() -> Vec<Defect> {
     ]
 }
 
-#[allow(clippy::too_many_lines, reason = "a table, one entry a defect")]
+#[allow(clippy::too_many_lines, reason = "a table")]
 fn wrong_values() -> Vec<Defect> {
     use Class::{Angle, Format, NotAProbability, NotPositiveDefinite, NotSymmetric, Unknown};
     let square = |x: f64, y: f64, z: f64, w: f64| json!([[x, y], [z, w]]);
