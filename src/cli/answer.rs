@@ -1,4 +1,6 @@
 //! `immaculate answer`: this crate's own filter in doubles as a program under test.
+//!
+//! After this file the reader knows how this crate answers the messages of a check, which is how any program does.
 
 use super::{Done, Refusal};
 use clap::{Args, ValueEnum};

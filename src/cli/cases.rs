@@ -1,4 +1,7 @@
 //! `immaculate cases`: the published cases.
+//!
+//! After this file the reader knows how cases are listed, copied and proven again, and that only `cases write` writes them and never
+//! changes one.
 
 use super::{Done, Refusal, json_text, write_file};
 use clap::{Args, Subcommand, ValueEnum};

@@ -1,4 +1,6 @@
 //! `immaculate check`: judges a program under test.
+//!
+//! After this file the reader knows what a check can be asked for, and what its exit status means.
 
 use super::{Done, Refusal, json_text};
 use clap::Args;

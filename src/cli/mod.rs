@@ -1,4 +1,6 @@
 //! The commands of the oracle, one file each: arguments in, text and exit status out.
+//!
+//! After this folder the reader knows how each command calls the library, and that files are written whole or not at all.
 
 pub mod answer;
 pub mod cases;

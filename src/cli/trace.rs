@@ -1,4 +1,6 @@
 //! `immaculate trace`: runs a problem file and prints every value of every step.
+//!
+//! After this file the reader knows the three forms of a trace: text, JSON and the long CSV, of doubles or of proven digits.
 
 use super::{Done, Refusal, json_text, read_file};
 use clap::Args;

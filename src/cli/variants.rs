@@ -1,4 +1,6 @@
 //! `immaculate variants`: the catalogue of what can be done otherwise.
+//!
+//! After this file the reader knows how the catalogue is shown.
 
 use super::{Done, Refusal, json_text};
 use clap::Args;

@@ -148,7 +148,7 @@ fn nearest(values: &Table<Vec<Enclosure>>) -> Result<(Trace, u32), String> {
         clippy::cast_sign_loss,
         reason = "between 0 and 400 000"
     )]
-    let digits = (-widest.max(f64::MIN_POSITIVE).log10()).max(0.0) as u32;
+    let digits = (-libm::log10(widest.max(f64::MIN_POSITIVE))).max(0.0) as u32;
     Ok((trace, digits))
 }
 

@@ -416,7 +416,7 @@ fn summarise(report: &mut CaseReport, judgement: &Judgement, error: Option<Strin
         .values
         .iter()
         .filter(|value| value.finding == Finding::Right)
-        .map(|value| -value.error.max(f64::EPSILON / 2.0).log10())
+        .map(|value| -libm::log10(value.error.max(f64::EPSILON / 2.0)))
         .reduce(f64::min);
     report.stopped.clone_from(&error);
     report.outcome = if findings().any(|finding| matches!(finding, Finding::Fault | Finding::NotFinite)) {

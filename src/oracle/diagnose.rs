@@ -4,9 +4,9 @@
 //! which nothing is left unexplained, in the faulty cases and in the others, are named. Forms go before conventions, and these before
 //! mistakes: a filter that is right in other algebra is not called wrong.
 //!
-//! Where no variant explains all alone, equations are taken one after the other: every value is judged on the program's own inputs, so where
-//! enough is shown, mistakes in different equations are independent. Where too little is shown for that, all pairs are tried. Where only some
-//! filters of a program are wrong, they are taken by themselves.
+//! Where no variant explains all alone, equations are taken one after the other: every value is judged on the program's own inputs, so
+//! where enough is shown, mistakes in different equations are independent. Where too little is shown for that, all pairs are tried. Where
+//! only some filters of a program are wrong, they are taken by themselves.
 
 use super::invalid::Invalid;
 use super::judge::{Case, Place};

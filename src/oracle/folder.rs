@@ -1,4 +1,6 @@
 //! Answers as files: one `ID.json` or `ID.csv` a case in a folder, and perhaps a `ready.json`.
+//!
+//! After this file the reader knows how answers come in without a process: as a user of MATLAB has them.
 
 use super::csv;
 use super::problem::ProblemFile;

@@ -1,4 +1,6 @@
 //! Why a file is refused: the place inside it, the reason, and the class of the reason.
+//!
+//! After this file the reader knows the classes by which the refusals of different programs are compared.
 
 use serde::Serialize;
 

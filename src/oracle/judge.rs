@@ -232,7 +232,7 @@ fn compare(
     expected: &[f64],
     noise: &[f64],
     scale: &[f64],
-    unit: f64,
+    precision: Precision,
     turn: &dyn Fn(Place, usize) -> bool,
 ) -> OwnError {
     let mut worst = OwnError {
@@ -246,14 +246,14 @@ fn compare(
         .iter()
         .zip(scale)
         .map(|(noise, scale)| noise / scale)
-        .fold(unit, f64::max);
+        .fold(precision.unit_roundoff(), f64::max);
     for index in 0..shown.len() {
         let mut error = (shown[index] - expected[index]).abs();
         if turn(place, index) {
             let turns = (error / (2.0 * std::f64::consts::PI)).round();
             error = (error - turns * 2.0 * std::f64::consts::PI).abs();
         }
-        let least = unit * expected[index].abs();
+        let least = (precision.unit_roundoff() * expected[index].abs()).max(precision.least_number());
         let ratio = if error == 0.0 {
             0.0
         } else {
@@ -296,15 +296,7 @@ impl Case<'_> {
         let noise = noise.get(step, quantity, mode)?;
         let scale = self.reference.scale.get(step, quantity, mode)?;
         let turn = |place: Place, row: usize| place.1 == Quantity::PredictedMeasurement && self.problem.is_bearing(row);
-        Some(compare(
-            place,
-            shown,
-            expected,
-            noise,
-            scale,
-            self.precision.unit_roundoff(),
-            &turn,
-        ))
+        Some(compare(place, shown, expected, noise, scale, self.precision, &turn))
     }
 
     /// Judges all shown values.

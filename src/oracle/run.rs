@@ -29,8 +29,8 @@ struct Exchange<'a, T> {
     triangle: Triangle,
 }
 
-/// Which triangle of a program's covariances is read. They are symmetric up to rounding, or should be; how far the triangles are apart is part
-/// of the rounding noise.
+/// Which triangle of a program's covariances is read. They are symmetric up to rounding, or should be; how far the triangles are apart
+/// is part of the rounding noise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Triangle {
     /// The lower one, which is the one that the equations read.

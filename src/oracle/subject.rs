@@ -33,6 +33,14 @@ impl Precision {
             Self::DecimalDigits(digits) => (0..digits).fold(5.0, |unit, _| unit / 10.0),
         }
     }
+
+    /// The least positive number: what is smaller may be zero.
+    pub fn least_number(self) -> f64 {
+        match self {
+            Self::Double | Self::DecimalDigits(_) => f64::from_bits(1),
+            Self::Single => f64::from(f32::from_bits(1)),
+        }
+    }
 }
 
 impl std::fmt::Display for Precision {

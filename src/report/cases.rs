@@ -1,4 +1,6 @@
 //! The published cases for people.
+//!
+//! After this file the reader knows how cases are listed and shown, and what is said of proving them again.
 
 use super::{never_broken, table, wrapped};
 use crate::oracle::case::{BadCase, Case};

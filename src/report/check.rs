@@ -219,7 +219,9 @@ fn diagnosis(diagnosis: &Diagnosis) -> String {
             }
         }
         Diagnosis::Several(members) => {
-            let _ = writeln!(text, "\nMOST LIKELY, {} AT ONCE", members.len());
+            let number = ["", "ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX"];
+            let number = number.get(members.len()).copied().unwrap_or("SEVERAL");
+            let _ = writeln!(text, "\nMOST LIKELY, {number} AT ONCE");
             for alternatives in members {
                 for (index, variant) in alternatives.iter().enumerate() {
                     let or = if index > 0 { "or " } else { "" };
@@ -252,21 +254,29 @@ fn diagnosis(diagnosis: &Diagnosis) -> String {
                 let _ = write!(text, "\nFILTER {name}: {sentence}");
             }
         }
-        Diagnosis::Unknown { best, unexplained, of } => {
-            text.push_str("\nCAUSE  Nothing in the catalogue, alone or with others, explains every value.\n");
-            if let Some(first) = best.first() {
-                let _ = writeln!(
-                    text,
-                    "  This explains {} of the {of} cases with a fault:",
-                    of - unexplained.len()
-                );
-                text.push_str(&wrapped(&one(first), "    "));
-                let named: Vec<&str> = unexplained.iter().take(5).map(String::as_str).collect();
-                let more = if unexplained.len() > named.len() { ", …" } else { "" };
-                let sentence = format!("and leaves unexplained: {}{more}", named.join(", "));
-                text.push_str(&wrapped(&sentence, "    "));
-            }
-        }
+        Diagnosis::Unknown { best, unexplained, of } => text.push_str(&unknown(best, unexplained, *of)),
+    }
+    text
+}
+
+/// What is said where nothing in the catalogue explains all.
+fn unknown(best: &[&Variant], unexplained: &[String], of: usize) -> String {
+    let mut text = String::new();
+    text.push_str("\nCAUSE  Nothing in the catalogue, alone or with others, explains every value.\n");
+    if let Some(first) = best.first() {
+        let _ = writeln!(
+            text,
+            "  This explains {} of the {of} cases with a fault:",
+            of - unexplained.len()
+        );
+        text.push_str(&wrapped(&one(first), "    "));
+        let named: Vec<&str> = unexplained.iter().take(5).map(String::as_str).collect();
+        let more = if unexplained.len() > named.len() { ", …" } else { "" };
+        let sentence = match named.len() {
+            0 => "but not the cases without one, whose values are right".to_owned(),
+            _ => format!("and leaves unexplained: {}{more}", named.join(", ")),
+        };
+        text.push_str(&wrapped(&sentence, "    "));
     }
     text
 }

@@ -1,4 +1,6 @@
 //! A trace for people: step by step, every value under its name, with the equations that give it.
+//!
+//! After this file the reader knows how a step is printed, with the equations of each value.
 
 use crate::imm::Quantity;
 use crate::oracle::problem::ProblemFile;

@@ -1,4 +1,6 @@
 //! The catalogue of variants for people.
+//!
+//! After this file the reader knows how a variant is printed, in a line and in full.
 
 use super::{never_broken, table, wrapped};
 use crate::oracle::variant::{Kind, Variant};

@@ -4,7 +4,7 @@
 //! next to zero and one, steps without a detection, and measurements that no mode explains.
 
 use super::draft::{covariance, estimate, mode, rows, unscented};
-use super::scene::{PLANE_TRACK, axis, plane, radar, scalar};
+use super::scene::{PLANE_TRACK, RADAR_TRACK, axis, plane, radar, scalar};
 use crate::oracle::problem::{EstimateFile, ProblemFile};
 
 /// The problems of this file.
@@ -134,7 +134,11 @@ fn missed() -> Vec<ProblemFile> {
             "The second of four steps has no detection: the chain moves the probabilities, the last likelihood must not move them again, \
              and the prediction is the estimate.",
         ),
-        radar("cubature-3").filter(unscented(1.0, 0.0, -1.0)).without(&[2]).named(
+        radar("cubature-3")
+            .filter(unscented(1.0, 0.0, -1.0))
+            .sees(&RADAR_TRACK[..4])
+            .without(&[2])
+            .named(
             "missed.unscented",
             &flags,
             "A missed detection in a filter with points and a negative weight: the next points are drawn from the prediction.",

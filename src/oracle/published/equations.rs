@@ -128,13 +128,14 @@ fn likelihood() -> Vec<ProblemFile> {
         stays(plane()).sees(&[[-20.0, 150.0]]).named(
             "likelihood.small",
             &["single-equation", "likelihood", "floor", "full-correlation"],
-            "A measurement more than ten standard deviations away: the likelihoods are far below a common floor of 1e-12 and far above the least \
-             double. Their ratio decides, and a floor under likelihoods makes them equal.",
+            "A measurement more than ten standard deviations away: the likelihoods are far below a common floor of 1e-12 and far above \
+             the least double. Their ratio decides, and a floor under likelihoods makes them equal.",
         ),
         stays(plane()).sees(&[[-246.8, 432.6]]).named(
             "likelihood.vanishing",
             &["single-equation", "likelihood", "floor", "full-correlation"],
-            "One likelihood is 1e-278, one 1e-307, between a floor of 1e-300 and the least normal double, and one 1e-374, below every              double. Floors of different height are told apart, and from a likelihood that is zero.",
+            "One likelihood is 1e-278, one 1e-307, between a floor of 1e-300 and the least normal double, and one 1e-374, below every \
+             double. Floors of different height are told apart, and from a likelihood that is zero.",
         ),
     ]
 }
