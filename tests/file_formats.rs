@@ -667,7 +667,7 @@ fn the_published_schemas_are_those_of_the_code() {
         let published = std::fs::read_to_string(&path).unwrap_or_default();
         assert!(
             published == format!("{schema:#}\n"),
-            "spec/schemas/{name}.schema.json is out of date; renew it with: immaculate cases schema {name} > spec/schemas/{name}.schema.json"
+            "spec/schemas/{name}.schema.json is out of date; renew: immaculate cases schema {name} > spec/schemas/{name}.schema.json"
         );
     }
 }

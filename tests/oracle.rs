@@ -2,7 +2,8 @@
 //!
 //! Goal: every mistake is caught in its own equation by the case that is meant for it, and named; no form is called wrong and no
 //! convention a mistake; and it is known what each level of answer can and cannot tell apart.
-//! Method: exhaustion over the catalogue and the published cases of ten steps and fewer, at three levels of answer; then snapshots of what came of it.
+//! Method: exhaustion over the catalogue and the published cases of ten steps and fewer, at three levels of answer; then snapshots of
+//! what came of it.
 
 use immaculate::imm::Quantity;
 use immaculate::oracle::case::{self, Case, Expected};
@@ -17,7 +18,8 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::sync::LazyLock;
 
-/// The cases with ten steps and fewer of filters with fewer than fifty points: the others show nothing more about equations, and take long.
+/// The cases with ten steps and fewer of filters with fewer than fifty points: the others show nothing more about equations, and take
+/// long.
 fn short_cases() -> Vec<String> {
     let is_light = |case: &&Case| {
         let (n, ..) = case.problem.dimensions();

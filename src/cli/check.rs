@@ -77,7 +77,7 @@ pub fn run(arguments: &Check) -> Result<Done, Refusal> {
     let report = check(subject.as_mut(), &selection, &progress).map_err(Refusal::request)?;
     bar.finish_and_clear();
     let text = if arguments.json {
-        json_text(&report::check::json(&report))
+        json_text(&report::check_json::json(&report))
     } else {
         report::check::text(&report)
     };

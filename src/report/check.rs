@@ -10,7 +10,6 @@ use crate::oracle::diagnose::Diagnosis;
 use crate::oracle::judge::{Finding, Judged};
 use crate::oracle::subject::Broken;
 use crate::oracle::variant::{Kind, Variant};
-use serde_json::{Value, json};
 use std::fmt::Write;
 
 /// The whole report.
@@ -28,7 +27,7 @@ pub fn text(report: &Report) -> String {
 }
 
 /// What a case's outcome is called.
-fn words(outcome: &Outcome) -> &'static str {
+pub(super) fn words(outcome: &Outcome) -> &'static str {
     match outcome {
         Outcome::Right => "right",
         Outcome::Wrong => "WRONG",
@@ -45,7 +44,7 @@ fn words(outcome: &Outcome) -> &'static str {
 }
 
 /// The reason that an outcome carries.
-fn reason(case: &CaseReport) -> Option<String> {
+pub(super) fn reason(case: &CaseReport) -> Option<String> {
     match &case.outcome {
         Outcome::Rejected {
             other_class: Some(class),
@@ -92,6 +91,7 @@ fn cases(report: &Report) -> String {
 
 /// The faults by equation: how many, and the first in full.
 fn faults(report: &Report) -> String {
+    let heading = if report.is_excused() { "OTHERWISE" } else { "FAULT" };
     let mut text = String::new();
     for quantity in Quantity::ALL {
         let faults: Vec<(&CaseReport, &Judged)> = report
@@ -101,7 +101,7 @@ fn faults(report: &Report) -> String {
         let Some((case, judged)) = faults.first() else { continue };
         let mut cases: Vec<&str> = faults.iter().map(|(case, _)| case.id.as_str()).collect();
         cases.dedup();
-        let _ = writeln!(text, "\nFAULT  {}  —  {}", quantity.name(), quantity.equation());
+        let _ = writeln!(text, "\n{heading}  {}  —  {}", quantity.name(), quantity.equation());
         text.push_str(&wrapped(&first_fault(case, judged, report), "  "));
         if !judged.hidden.is_empty() {
             let names: Vec<&str> = judged.hidden.iter().map(|quantity| quantity.name()).collect();
@@ -158,7 +158,7 @@ fn first_fault(case: &CaseReport, judged: &Judged, report: &Report) -> String {
         "infinitely many times".into()
     };
     format!(
-        "{place}{} is {}, and from the program's own values before it should be {}: off by {:.2e} {}, {noise} the rounding noise of {}.",
+        "{place}{} is {}, and should be {} by the program's own values before it: off by {:.2e} {}, {noise} the rounding noise of {}.",
         entry(judged, own.index, case),
         number(own.shown),
         number(own.expected),
@@ -337,7 +337,7 @@ fn coverage(report: &Report) -> String {
     text
 }
 
-fn counts(report: &Report) -> (usize, usize) {
+pub(super) fn counts(report: &Report) -> (usize, usize) {
     let sum = |of: fn(&CaseReport) -> usize| report.cases.iter().map(of).sum();
     (sum(|case| case.judged), sum(|case| case.of))
 }
@@ -378,107 +378,6 @@ fn summary(report: &Report) -> String {
         report.cases.len()
     );
     format!("\n{}", wrapped(&sentence, ""))
-}
-
-/// The report as JSON.
-pub fn json(report: &Report) -> Value {
-    let (judged, of) = counts(report);
-    let names = |quantities: &[Quantity]| -> Vec<&str> { quantities.iter().map(|quantity| quantity.name()).collect() };
-    let cases: Vec<Value> = report
-        .cases
-        .iter()
-        .map(|case| {
-            let values = case.judgement.iter().flat_map(|judgement| &judgement.values);
-            let unusual: Vec<Value> = values
-                .filter(|value| value.finding != Finding::Right)
-                .map(|value| value_json(value, &names))
-                .collect();
-            json!({
-                "id": case.id,
-                "verdict": words(&case.outcome).to_lowercase(),
-                "reason": reason(case),
-                "wrong": case.outcome.is_wrong(),
-                "judged": case.judged,
-                "of": case.of,
-                "digits": case.digits,
-                "not_simply_right": unusual,
-                "failures": case.judgement.as_ref().map(|judgement| &judgement.failures),
-            })
-        })
-        .collect();
-    json!({
-        "format": "immaculate-report/1",
-        "name": report.ready.name,
-        "precision": report.ready.precision.to_string(),
-        "conventions": report.ready.conventions,
-        "wrong": report.is_wrong(),
-        "echo": report.echo,
-        "judged": judged,
-        "of": of,
-        "not_asked": report.not_asked,
-        "never_shown": names(&report.hidden),
-        "diagnosis": diagnosis_json(&report.diagnosis),
-        "remarks": report.remarks,
-        "cases": cases,
-    })
-}
-
-fn value_json(value: &Judged, names: &dyn Fn(&[Quantity]) -> Vec<&'static str>) -> Value {
-    let (step, quantity, mode) = value.place;
-    json!({
-        "step": step,
-        "quantity": quantity.name(),
-        "mode": quantity.is_of_mode().then_some(mode),
-        "equation": quantity.equation(),
-        "finding": finding(value.finding),
-        "error_in_units": value.error,
-        "own": value.own.map(|own| json!({
-            "entry": own.index,
-            "shown": own.shown,
-            "expected": own.expected,
-            "noise_ratio": own.ratio,
-            "error_in_units": own.size,
-        })),
-        "hidden": names(&value.hidden),
-    })
-}
-
-/// What a finding is called.
-fn finding(finding: Finding) -> &'static str {
-    match finding {
-        Finding::Right => "right",
-        Finding::Propagated => "propagated",
-        Finding::CannotTell => "cannot tell",
-        Finding::Undetermined => "undetermined",
-        Finding::Stale => "shown without a detection",
-        Finding::NotFinite => "not finite",
-        Finding::Fault => "fault",
-    }
-}
-
-fn diagnosis_json(diagnosis: &Diagnosis) -> Value {
-    let one = |variant: &Variant| json!({ "id": variant.id, "kind": variant.kind.name(), "about": variant.about });
-    let list = |variants: &[&Variant]| -> Vec<Value> { variants.iter().map(|variant| one(variant)).collect() };
-    match diagnosis {
-        Diagnosis::Nothing => Value::Null,
-        Diagnosis::One(variants) => json!({ "one_of": list(variants) }),
-        Diagnosis::Several(members) => {
-            json!({ "together": members.iter().map(|member| json!({ "one_of": list(member) })).collect::<Vec<_>>() })
-        }
-        Diagnosis::Pairs(pairs) => {
-            json!({ "one_pair_of": pairs.iter().map(|pair| json!(list(pair))).collect::<Vec<_>>() })
-        }
-        Diagnosis::ByFilter(filters) => {
-            let of_filter = |(name, found): &(String, Diagnosis)| (name.clone(), diagnosis_json(found));
-            json!({ "by_filter": filters.iter().map(of_filter).collect::<serde_json::Map<_, _>>() })
-        }
-        Diagnosis::Unknown { best, unexplained, of } => json!({
-            "unknown": true,
-            "best": list(best),
-            "unexplained_by_the_first": unexplained,
-            "faulty_cases": of,
-        }),
-    }
 }
 
 /// A number with an exponent where it would be long without.

@@ -5,6 +5,7 @@
 
 pub mod cases;
 pub mod check;
+pub mod check_json;
 pub mod claims;
 pub mod figure;
 pub mod reproduction;

@@ -82,9 +82,10 @@ python_filters() {
 
     expect 0 "RIGHT: numpy example, double precision" -- -- "${numpy[@]}"
     expect 0 "RIGHT: numpy example, single precision" -- -- "${numpy[@]}" --single
-    for form in joseph inverse information; do
+    for form in joseph inverse; do
         expect 0 "RIGHT: numpy example, double precision" -- -- "${numpy[@]}" --form "$form"
     done
+    expect 0 "RIGHT, but otherwise" "another form" -- -- "${numpy[@]}" --form information
     for convention in angle_mean=vector square_root=cholesky-upper first_step=unmixed log_likelihood=without-two-pi; do
         expect 0 "RIGHT: numpy example, double precision" -- -- "${numpy[@]}" --convention "$convention"
     done
@@ -133,7 +134,7 @@ filterpy() {
     local combined="(prediction-combined-with-old-probabilities; mistake)" stale="(points-not-drawn-afresh; mistake)"
 
     # What is right is right; the prediction is combined with the probabilities of the step before.
-    expect 0 "RIGHT: FilterPy" -- --case likelihood --case update --case steps.one -- "$@" kalman
+    expect 0 "RIGHT: FilterPy" -- --case likelihood.e --case likelihood.g --case update --case steps.one -- "$@" kalman
     expect 1 "FAULT combined_prediction.mean" "MOST LIKELY" "$combined" -- --case mixing --case step --case far --case units -- "$@" kalman
     expect 0 "RIGHT: FilterPy" -- --case update --case rule -- "$@" unscented
     expect 1 "FAULT combined_prediction.mean" "MOST LIKELY" "$combined" -- -- "$@" unscented

@@ -140,7 +140,7 @@ fn missed() -> Vec<ProblemFile> {
             .without(&[2])
             .named(
             "missed.unscented",
-            &flags,
+            &[&flags[..], &["negative-weight"]].concat(),
             "A missed detection in a filter with points and a negative weight: the next points are drawn from the prediction.",
         ),
         plane().sees(&PLANE_TRACK).without(&[2, 3, 4]).named(

@@ -14,11 +14,31 @@ use nalgebra::{SMatrix, SVector};
 
 /// Applies a form; whether it is one.
 pub(super) fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
-    of_update(id, setup)
+    of_mean(id, setup)
+        || of_update(id, setup)
         || of_inverse(id, setup)
         || of_moments(id, setup)
         || of_prediction(id, setup)
         || of_probability(id, setup)
+}
+
+/// The update of the mean.
+fn of_mean<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+    if id != "information-update-of-the-mean" {
+        return false;
+    }
+    // x̂ = P (P⁻⁻¹ x̂⁻ + Hᵀ R⁻¹ z), P = (P⁻⁻¹ + Hᵀ R⁻¹ H)⁻¹
+    if !draws_points(setup) {
+        setup.equations.updated_mean = |problem, _, now, j| {
+            let h = problem.measurement.matrix();
+            let of_measurement = h.transpose() * inverse(&problem.measurement_noise);
+            let before = inverse(&now.predicted[j].covariance);
+            let mean = &now.predicted[j].mean;
+            let measurement = &now.innovations[j] + &h * mean;
+            inverse(&(&before + &of_measurement * &h)) * (before * mean + of_measurement * measurement)
+        };
+    }
+    true
 }
 
 /// The updated covariance.

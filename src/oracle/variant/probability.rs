@@ -66,8 +66,8 @@ fn of_likelihood<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut 
         }
         // Lⱼ itself, which may be too small for a double
         "likelihoods-exponentiated-before-comparing" => {
-            *entry = |_, _, now, j| now.log_likelihoods[j].exp();
-            equations.log_evidence = |_, _, now| now.evidence.ln();
+            *entry = |_, _, now, j| T::exp(&now.log_likelihoods[j]);
+            equations.log_evidence = |_, _, now| T::ln(&now.evidence);
         }
         // max(Lⱼ, 2⁻¹⁰²²), the smallest normal double
         "likelihood-floor-smallest-double" => *entry = |_, _, now, j| floored(now, j, 2, 1022),
