@@ -2,6 +2,7 @@
 //!
 //! After this file the reader knows how a step is printed, with the equations of each value.
 
+use super::wrapped;
 use crate::imm::Quantity;
 use crate::oracle::problem::ProblemFile;
 use crate::oracle::trace::{Dimensions, Table};
@@ -10,7 +11,7 @@ use std::fmt::Write;
 /// The trace of a problem, its numbers already written.
 pub fn text(problem: &ProblemFile, values: &Table<Vec<String>>) -> String {
     let Dimensions { n, m, r, steps } = values.dimensions;
-    let mut text = format!("{}  —  {}\n", problem.id, problem.about);
+    let mut text = format!("{}\n{}", problem.id, wrapped(&problem.about, "  "));
     let _ = writeln!(
         text,
         "state {} in {}",
