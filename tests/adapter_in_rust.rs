@@ -84,13 +84,7 @@ impl Subject for Example {
                 })
                 .collect(),
         };
-        let (n, m, r) = problem.dimensions();
-        let mut trace = Trace::empty(Dimensions {
-            n,
-            m,
-            r,
-            steps: problem.measurements.len(),
-        });
+        let mut trace = Trace::empty(problem.dimensions());
         for entry in &problem.measurements {
             let step = imm.step(entry.z.as_deref());
             show(&mut trace, entry.step, &step, entry.z.is_some());

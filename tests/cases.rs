@@ -11,6 +11,7 @@ use immaculate::oracle::problem::{FilterFile, MeasurementFile, ProblemFile, Rows
 use immaculate::oracle::published::{FLAGS, all, rejected};
 use immaculate::oracle::run::Computed;
 use immaculate::oracle::shape::{self, Work};
+use immaculate::oracle::trace::Dimensions;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -420,6 +421,6 @@ impl Work for InDoubles<'_> {
 }
 
 fn run(problem: &ProblemFile) -> Run {
-    let (n, m, _) = problem.dimensions();
+    let Dimensions { n, m, .. } = problem.dimensions();
     shape::dispatch(n, m, InDoubles(problem)).unwrap()
 }

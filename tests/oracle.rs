@@ -22,7 +22,7 @@ use std::sync::LazyLock;
 /// long.
 fn short_cases() -> Vec<String> {
     let is_light = |case: &&Case| {
-        let (n, ..) = case.problem.dimensions();
+        let n = case.problem.dimensions().n;
         let has_many_points = n > 5 || case.problem.filter.name().starts_with("gauss-hermite");
         case.problem.measurements.len() <= 10 && !has_many_points && matches!(case.expected, Expected::Trace(_))
     };

@@ -551,17 +551,17 @@ fn a_value_at_a_missed_detection_is_stale() {
 fn a_trace_of_other_dimensions_is_refused() {
     let other: [fn(&ProblemFile) -> Answer; 3] = [
         |problem| {
-            let mut dimensions = dimensions(problem);
+            let mut dimensions = problem.dimensions();
             dimensions.n += 1;
             shows(Trace::empty(dimensions))
         },
         |problem| {
-            let mut trace = Trace::empty(dimensions(problem));
+            let mut trace = Trace::empty(problem.dimensions());
             trace.set(1, Quantity::CombinedMean, 0, vec![0.0; 3]);
             shows(trace)
         },
         |problem| {
-            let mut trace = Trace::empty(dimensions(problem));
+            let mut trace = Trace::empty(problem.dimensions());
             trace.set(1, Quantity::LogLikelihood, 0, Vec::new());
             shows(trace)
         },
@@ -919,12 +919,6 @@ const SMALL: Dimensions = Dimensions {
     steps: 1,
 };
 
-fn dimensions(problem: &ProblemFile) -> Dimensions {
-    let (n, m, r) = problem.dimensions();
-    let steps = problem.measurements.len();
-    Dimensions { n, m, r, steps }
-}
-
 fn shows(trace: Trace) -> Answer {
     Answer::Steps { trace, error: None }
 }
@@ -938,7 +932,7 @@ fn right(problem: &ProblemFile) -> Answer {
 }
 
 fn nothing(problem: &ProblemFile) -> Answer {
-    shows(Trace::empty(dimensions(problem)))
+    shows(Trace::empty(problem.dimensions()))
 }
 
 /// Right, with another convention that is not declared.

@@ -11,6 +11,7 @@ use immaculate::oracle::check::Selection;
 use immaculate::oracle::problem::ProblemFile;
 use immaculate::oracle::published;
 use immaculate::oracle::schema;
+use immaculate::oracle::trace::Dimensions;
 use immaculate::report;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
@@ -118,10 +119,10 @@ fn list(select: &Select) -> Result<Done, Refusal> {
             .iter()
             .map(|case| {
                 let problem = &case.problem;
-                let (n, m, r) = problem.dimensions();
+                let Dimensions { n, m, r, steps } = problem.dimensions();
                 json!({
                     "id": problem.id, "about": problem.about, "flags": problem.flags, "filter": problem.filter,
-                    "n": n, "m": m, "modes": r, "steps": problem.measurements.len(),
+                    "n": n, "m": m, "modes": r, "steps": steps,
                     "rejected": match case.expected { Expected::Rejection(class) => Some(class.name()), Expected::Trace(_) => None },
                 })
             })

@@ -249,6 +249,15 @@ impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
         }
     }
 
+    /// The table for a problem: filters with points where it has a rule, else Kalman filters.
+    pub fn standard(problem: &Problem<T, N, M>) -> Self {
+        if problem.rule.is_some() {
+            Self::cubature()
+        } else {
+            Self::kalman()
+        }
+    }
+
     /// Cubature filters with second moments about the origin, as zhu2016 (24), (45) and (48) print them: a form, equal in exact
     /// arithmetic for measurements without angles and rules whose covariance weights sum to one (the (α, β, κ) unscented rule's do only
     /// for β = α² − 1).

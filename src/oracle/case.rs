@@ -6,7 +6,7 @@
 use super::certify::{Certified, NotCertified, certify};
 use super::invalid::{Class, Invalid};
 use super::problem::ProblemFile;
-use super::trace::{Dimensions, FORMAT, Trace};
+use super::trace::{FORMAT, Trace};
 use include_dir::{Dir, include_dir};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -242,9 +242,7 @@ fn read_expected(value: &Value, problem: &ProblemFile) -> Result<Expected, Inval
             .map(Expected::Rejection)
             .ok_or_else(|| Invalid::new(Class::Format, "rejected.class", "is not a class"));
     }
-    let (n, m, r) = problem.dimensions();
-    let steps = problem.measurements.len();
-    let trace = Trace::from_json(&value["steps"], Dimensions { n, m, r, steps })?;
+    let trace = Trace::from_json(&value["steps"], problem.dimensions())?;
     Ok(Expected::Trace(trace))
 }
 

@@ -10,9 +10,9 @@ use super::problem::ProblemFile;
 use super::scale::scales;
 use super::setup::Setup;
 use super::shape::{self, Work};
-use super::trace::{Table, Trace, numbers_as_json};
+use super::trace::{Dimensions, Table, Trace, numbers_as_json};
 use crate::imm::Quantity;
-use crate::number::Enclosure;
+use crate::number::{Enclosure, RandomRounding};
 use serde_json::{Value, json};
 
 /// The bits of the first attempt. The longest runs of the published cases need some hundreds.
@@ -73,7 +73,7 @@ pub fn certify(problem: &ProblemFile) -> Result<Certified, NotCertified> {
 /// As [`certify`].
 pub fn certify_from(problem: &ProblemFile, first_bits: u32) -> Result<Certified, NotCertified> {
     problem.check()?;
-    let (n, m, _) = problem.dimensions();
+    let Dimensions { n, m, .. } = problem.dimensions();
     let mut bits = first_bits;
     loop {
         match shape::dispatch(n, m, Attempt { problem, bits })? {
@@ -106,8 +106,11 @@ impl Work for Attempt<'_> {
         })?;
         let scale = scales(&trace);
         let unit_roundoff = f64::EPSILON / 2.0;
-        let in_doubles: Setup<f64, N, M> = problem.setup_in_doubles()?;
-        let noise = noise::spread(&trace, unit_roundoff, noise::RUNS, |_| in_doubles.perturbed().run());
+        let perturbed = |_| {
+            let setup: Setup<RandomRounding, N, M> = problem.setup_perturbed()?;
+            Ok(setup.run())
+        };
+        let noise = noise::spread(&trace, unit_roundoff, noise::RUNS, perturbed)?;
         Ok(Certified {
             trace,
             scale,
@@ -228,7 +231,7 @@ fn rounded(value: f64, digits: usize) -> f64 {
 /// As [`certify`].
 pub fn certified_decimals(problem: &ProblemFile, digits: u32) -> Result<(Table<Vec<String>>, u32), NotCertified> {
     problem.check()?;
-    let (n, m, _) = problem.dimensions();
+    let Dimensions { n, m, .. } = problem.dimensions();
     // 3.33 bits a digit, and some for what is lost on the way.
     let mut bits = FIRST_BITS.max((digits.saturating_mul(4)).next_power_of_two());
     loop {

@@ -7,7 +7,7 @@ use super::case::{self, BadCase, Case, Expected};
 use super::diagnose::{Diagnosis, Evidence, diagnose};
 use super::invalid::Invalid;
 use super::judge::{self, Finding, Judged, Judgement, LIMIT, Reference};
-use super::subject::{Answer, Broken, ECHO, Precision, Ready, Subject};
+use super::subject::{Answer, Broken, Precision, Ready, Subject, echoed};
 use super::trace::{Dimensions, Trace};
 use super::variant::{Variant, catalogue};
 use crate::imm::Quantity;
@@ -279,7 +279,7 @@ pub fn check(subject: &mut dyn Subject, selection: &Selection, progress: &dyn Fn
         })
     });
     Ok(Report {
-        echo: ready.echo.as_deref().map(is_right_echo),
+        echo: ready.echo.as_ref().map(|echo| *echo == echoed()),
         not_asked: selected.len() - asked.len(),
         hidden: hidden.collect(),
         ready,
@@ -289,25 +289,13 @@ pub fn check(subject: &mut dyn Subject, selection: &Selection, progress: &dyn Fn
     })
 }
 
-/// Whether the echo is the matrix times the vector.
-fn is_right_echo(echo: &[f64]) -> bool {
-    let expected: Vec<f64> = ECHO
-        .0
-        .iter()
-        .map(|row| row.iter().zip(ECHO.1).map(|(a, b)| a * b).sum())
-        .collect();
-    echo == expected
-}
-
 /// What can be said of one answer, and what is shown with its reference if there is something to explain.
 type JudgedAnswer = (CaseReport, Option<(Trace, Reference)>);
 
 fn judge_answer(case: &Case, answer: Answer, ready: &Ready, conventions: &[&str]) -> Result<JudgedAnswer, Invalid> {
-    let (n, m, r) = case.problem.dimensions();
-    let steps = case.problem.measurements.len();
     let mut report = CaseReport {
         id: case.problem.id.clone(),
-        dimensions: Dimensions { n, m, r, steps },
+        dimensions: case.problem.dimensions(),
         outcome: Outcome::NothingShown,
         judgement: None,
         judged: 0,

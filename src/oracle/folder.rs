@@ -6,7 +6,7 @@ use super::csv;
 use super::problem::ProblemFile;
 use super::process::read_answer;
 use super::subject::{Answer, Broken, Ready, Subject};
-use super::trace::{Dimensions, read_json};
+use super::trace::read_json;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -54,9 +54,7 @@ impl Subject for Folder {
 
 impl Folder {
     fn read(&self, problem: &ProblemFile) -> Result<Answer, Broken> {
-        let (n, m, r) = problem.dimensions();
-        let steps = problem.measurements.len();
-        let dimensions = Dimensions { n, m, r, steps };
+        let dimensions = problem.dimensions();
         let path = self.path.join(format!("{}.json", problem.id));
         if let Some(text) = read_file(&path)? {
             let message = read_json(&text).map_err(|reason| Broken::Garbage {

@@ -16,7 +16,7 @@ use super::scale::scales;
 use super::setup::Setup;
 use super::shape::{self, Work};
 use super::subject::Precision;
-use super::trace::Trace;
+use super::trace::{Dimensions, Trace};
 use super::variant;
 use crate::imm::Quantity;
 use crate::imm::quantity::Input;
@@ -122,7 +122,7 @@ pub fn expect(
     precision: Precision,
     runs: u64,
 ) -> Result<Expected, Invalid> {
-    let (n, m, _) = problem.dimensions();
+    let Dimensions { n, m, .. } = problem.dimensions();
     let work = Expect {
         problem,
         variants,
@@ -146,8 +146,7 @@ impl Work for Expect<'_> {
     type Output = Result<Expected, Invalid>;
 
     fn run<const N: usize, const M: usize>(self) -> Self::Output {
-        let own: Setup<f64, N, M> = self.problem.setup_in_doubles()?;
-        let mut setup = own.clone();
+        let mut setup: Setup<f64, N, M> = self.problem.setup_in_doubles()?;
         for id in self.variants {
             variant::apply(id, &mut setup);
         }
@@ -157,11 +156,11 @@ impl Work for Expect<'_> {
         };
         let noise = noise::spread(&centre.values, self.precision.unit_roundoff(), self.runs, |number| {
             // The inputs are perturbed, too, so each run has a problem of its own.
-            let mut setup = own.perturbed();
+            let mut setup: Setup<RandomRounding, N, M> = self.problem.setup_perturbed()?;
             for id in self.variants {
                 variant::apply(id, &mut setup);
             }
-            match self.shown {
+            Ok(match self.shown {
                 Some(shown) => {
                     let triangle = if number % 2 == 0 {
                         Triangle::Lower
@@ -171,8 +170,8 @@ impl Work for Expect<'_> {
                     setup.run_along(shown, RandomRounding::input, triangle)
                 }
                 None => setup.run(),
-            }
-        });
+            })
+        })?;
         Ok(Expected {
             values: centre.values,
             noise,
@@ -310,9 +309,9 @@ impl Case<'_> {
         let mut suspects = BTreeSet::new();
         for place in self.shown.all_places() {
             let (step, quantity, mode) = place;
-            let Some(shown) = self.shown.get(step, quantity, mode) else {
+            if self.shown.get(step, quantity, mode).is_none() {
                 continue;
-            };
+            }
             let hidden = hidden_inputs(self.problem, self.shown, place);
             let against_certified = self.error(place, &self.reference.trace, &self.reference.noise);
             let against_own = self.error(place, &own.values, &own.noise);
@@ -320,10 +319,10 @@ impl Case<'_> {
             let is_inherited = against_own.is_some_and(|error| error.ratio <= LIMIT);
             let finding = if self.reference.trace.get(step, quantity, mode).is_none() {
                 Finding::Stale
-            } else if !is_finite(Some(shown)) {
+            } else if self.shown.finite(step, quantity, mode).is_none() {
                 let is_inherited = shown_inputs(self.problem, self.shown, place)
                     .into_iter()
-                    .any(|(step, input, mode)| !is_finite(self.shown.get(step, input, mode)));
+                    .any(|(step, input, mode)| self.shown.finite(step, input, mode).is_none());
                 if is_inherited {
                     Finding::Propagated
                 } else {
@@ -400,9 +399,9 @@ impl Case<'_> {
         let is_shown = |place: &Place| self.shown.get(place.0, place.1, place.2).is_some();
         let is_within = |place: Place| {
             let (step, quantity, mode) = place;
-            if !is_finite(self.shown.get(step, quantity, mode)) {
+            if self.shown.finite(step, quantity, mode).is_none() {
                 // What is not finite is explained by equations that have no answer either.
-                return !is_finite(own.values.get(step, quantity, mode));
+                return own.values.finite(step, quantity, mode).is_none();
             }
             let error = self.error(place, &own.values, &own.noise);
             error.is_some_and(|error| error.ratio <= limit)
@@ -413,11 +412,6 @@ impl Case<'_> {
             .filter(|place| is_shown(place) && is_asked(place));
         Ok(places.all(is_within))
     }
-}
-
-/// Whether there are values, and all of them are finite.
-fn is_finite(values: Option<&Vec<f64>>) -> bool {
-    values.is_some_and(|values| values.iter().all(|value| value.is_finite()))
 }
 
 /// The values that one depends on: those between it and the last shown ones are hidden, and these are shown.

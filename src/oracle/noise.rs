@@ -4,6 +4,7 @@
 //! filter may be off by 10⁻⁷ of a standard deviation on a hard problem, and a wrong one by 10⁻⁸ on an easy one. So the same
 //! equations are run a few times in [`RandomRounding`], and how far the values scatter is the unit.
 
+use super::invalid::Invalid;
 use super::run::Computed;
 use super::trace::{Table, Trace};
 use crate::number::RandomRounding;
@@ -15,17 +16,26 @@ pub const RUNS: u64 = 8;
 /// The greatest deviation of any of the runs from the centre, for each number; infinite where a run could not be computed.
 ///
 /// `run` makes one run with random rounding, and is told its number; it is made `runs` times.
-pub fn spread(centre: &Trace, unit_roundoff: f64, runs: u64, run: impl Fn(u64) -> Computed<RandomRounding>) -> Trace {
+///
+/// # Errors
+///
+/// The first of `run`.
+pub fn spread(
+    centre: &Trace,
+    unit_roundoff: f64,
+    runs: u64,
+    run: impl Fn(u64) -> Result<Computed<RandomRounding>, Invalid>,
+) -> Result<Trace, Invalid> {
     let mut spread = centre.map(|_, values| vec![0.0_f64; values.len()]);
     for seed in 0..runs {
         let sample = RandomRounding::with(unit_roundoff, seed, || {
-            run(seed)
-                .values
-                .map(|_, values| values.iter().map(|value| value.output()).collect::<Vec<_>>())
-        });
+            let computed = run(seed)?;
+            let output = |values: &Vec<RandomRounding>| values.iter().map(|value| value.output()).collect::<Vec<_>>();
+            Ok(computed.values.map(|_, values| output(values)))
+        })?;
         widen(&mut spread, centre, &sample);
     }
-    spread
+    Ok(spread)
 }
 
 /// Takes the deviations of one run into the spread.

@@ -4,6 +4,7 @@
 //! and how every defect of a file becomes one sentence with the place inside the file.
 
 use super::invalid::{Class, Invalid};
+use super::trace::Dimensions;
 use super::{shape, unreadable};
 use crate::imm::InvalidProblem;
 use schemars::JsonSchema;
@@ -227,9 +228,14 @@ impl ProblemFile {
         Ok(problem)
     }
 
-    /// n, m and r: entries of the state, of the measurement, and modes.
-    pub fn dimensions(&self) -> (usize, usize, usize) {
-        (self.state.len(), self.noise.len(), self.modes.len())
+    /// Entries of the state, of the measurement, modes, and steps.
+    pub fn dimensions(&self) -> Dimensions {
+        Dimensions {
+            n: self.state.len(),
+            m: self.noise.len(),
+            r: self.modes.len(),
+            steps: self.measurements.len(),
+        }
     }
 
     /// Checks all that the filter relies on.
@@ -271,7 +277,7 @@ impl ProblemFile {
     }
 
     fn check_shapes(&self) -> Result<(), Invalid> {
-        let (n, m, r) = self.dimensions();
+        let Dimensions { n, m, r, .. } = self.dimensions();
         check_length("problem.units", self.units.len(), n)?;
         check_matrix("problem.R", &self.noise, m, m)?;
         if r == 0 {

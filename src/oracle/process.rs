@@ -225,13 +225,6 @@ impl Process {
 
     /// The answer to a problem; answers to problems that were asked before are remarked upon and passed over.
     fn answer(&mut self, problem: &ProblemFile) -> Result<Answer, Broken> {
-        let (n, m, r) = problem.dimensions();
-        let dimensions = Dimensions {
-            n,
-            m,
-            r,
-            steps: problem.measurements.len(),
-        };
         let since = Instant::now();
         loop {
             let message = self.receive(since, self.limit)?;
@@ -246,7 +239,7 @@ impl Process {
                     answered: id,
                 });
             }
-            return read_answer(&message, dimensions);
+            return read_answer(&message, problem.dimensions());
         }
     }
 }

@@ -41,9 +41,9 @@ pub enum Triangle {
 
 impl<T: Real, const N: usize, const M: usize> Observer<T, N, M> for Exchange<'_, T> {
     fn computed(&mut self, quantity: Quantity, j: usize, now: &mut Step<T, N, M>) {
-        let shown = self.shown.and_then(|shown| shown.get(now.step, quantity, j));
+        let shown = self.shown.and_then(|shown| shown.finite(now.step, quantity, j));
         self.computed.set(now.step, quantity, j, now.values(quantity, j));
-        if let Some(shown) = shown.filter(|values| values.iter().all(|value| value.is_finite())) {
+        if let Some(shown) = shown {
             now.replace(
                 quantity,
                 j,
@@ -135,13 +135,11 @@ fn resume<T: Real, const N: usize, const M: usize>(
         .flat_map(|j| [(Quantity::UpdatedMean, j), (Quantity::UpdatedCovariance, j)])
         .chain([(Quantity::ModeProbabilities, 0)]);
     for (quantity, j) in needed {
-        match shown.get(now.step, quantity, j) {
-            Some(values) if values.iter().all(|value| value.is_finite()) => {
-                let own: Vec<T> = values.iter().map(|&value| number(value)).collect();
-                now.replace(quantity, j, &own);
-            }
-            _ => return false,
-        }
+        let Some(values) = shown.finite(now.step, quantity, j) else {
+            return false;
+        };
+        let own: Vec<T> = values.iter().map(|&value| number(value)).collect();
+        now.replace(quantity, j, &own);
     }
     true
 }
@@ -152,7 +150,7 @@ fn resume<T: Real, const N: usize, const M: usize>(
 ///
 /// [`Invalid`] for a problem that cannot be set up.
 pub fn run_in_doubles(problem: &ProblemFile) -> Result<(Trace, Option<String>), Invalid> {
-    let (n, m, _) = problem.dimensions();
+    let Dimensions { n, m, .. } = problem.dimensions();
     shape::dispatch(n, m, InDoubles(problem))?
 }
 

@@ -1,7 +1,6 @@
 //! A problem in one number system, ready to be run, and to be varied.
 //!
-//! After this file the reader knows how a problem file comes into any number system, each number of the file as it is, and how the problem
-//! in doubles becomes one in random rounding.
+//! After this file the reader knows how a problem file comes into any number system, each number of the file as it is, or perturbed.
 
 use super::invalid::{Class, Invalid};
 use super::problem::{FilterFile, MeasurementFile, ProblemFile, Rows};
@@ -35,65 +34,6 @@ impl<T: Real, const N: usize, const M: usize> Setup<T, N, M> {
     }
 }
 
-impl<const N: usize, const M: usize> Setup<f64, N, M> {
-    /// The same problem in random rounding: every number perturbed, and the filter's own equations.
-    pub fn perturbed(&self) -> Setup<RandomRounding, N, M> {
-        let list = |values: &[f64]| values.iter().copied().map(RandomRounding::input).collect::<Vec<_>>();
-        let problem = &self.problem;
-        let rule = problem.rule.as_ref().map(|rule| Rule {
-            points: rule
-                .points
-                .iter()
-                .map(|point| point.map(RandomRounding::input))
-                .collect(),
-            weights: list(&rule.weights),
-            covariance_weights: list(&rule.covariance_weights),
-        });
-        let modes = problem.modes.iter().map(|mode| Mode {
-            name: mode.name.clone(),
-            transition: mode.transition.map(RandomRounding::input),
-            noise: mode.noise.map(RandomRounding::input),
-        });
-        let estimates = self.initial.modes.iter().map(|estimate| Gaussian {
-            mean: estimate.mean.map(RandomRounding::input),
-            covariance: estimate.covariance.map(RandomRounding::input),
-        });
-        let measurements = self.measurements.iter();
-        Setup {
-            equations: if rule.is_some() {
-                Equations::cubature()
-            } else {
-                Equations::kalman()
-            },
-            problem: Problem {
-                modes: modes.collect(),
-                transition: problem.transition.iter().map(|row| list(row)).collect(),
-                measurement: match &problem.measurement {
-                    Measurement::Linear(matrix) => Measurement::Linear(matrix.map(RandomRounding::input)),
-                    Measurement::Polar {
-                        components,
-                        position,
-                        sensor,
-                    } => Measurement::Polar {
-                        components: *components,
-                        position: *position,
-                        sensor: sensor.map(RandomRounding::input),
-                    },
-                },
-                measurement_noise: problem.measurement_noise.map(RandomRounding::input),
-                rule,
-            },
-            initial: Initial {
-                modes: estimates.collect(),
-                mode_probabilities: list(&self.initial.mode_probabilities),
-            },
-            measurements: measurements
-                .map(|z| z.as_ref().map(|z| z.map(RandomRounding::input)))
-                .collect(),
-        }
-    }
-}
-
 impl ProblemFile {
     /// The problem in a number system; `number` puts a double there.
     ///
@@ -109,23 +49,44 @@ impl ProblemFile {
         self.setup_with_rule(number, self.rule(number)?)
     }
 
-    /// The problem in doubles. The doubles of a rule are computed once and kept: a search asks for them thousands of times.
+    /// The problem in doubles.
     ///
     /// # Errors
     ///
     /// As [`ProblemFile::setup`].
     pub fn setup_in_doubles<const N: usize, const M: usize>(&self) -> Result<Setup<f64, N, M>, Invalid> {
+        self.setup_with_rule(|value| value, self.rule_in_doubles()?)
+    }
+
+    /// The problem in random rounding, every number perturbed.
+    ///
+    /// # Errors
+    ///
+    /// As [`ProblemFile::setup`].
+    pub fn setup_perturbed<const N: usize, const M: usize>(&self) -> Result<Setup<RandomRounding, N, M>, Invalid> {
+        let list = |values: &[f64]| values.iter().copied().map(RandomRounding::input).collect();
+        let rule = self.rule_in_doubles::<N>()?.map(|rule| Rule {
+            points: rule
+                .points
+                .iter()
+                .map(|point| point.map(RandomRounding::input))
+                .collect(),
+            weights: list(&rule.weights),
+            covariance_weights: list(&rule.covariance_weights),
+        });
+        self.setup_with_rule(RandomRounding::input, rule)
+    }
+
+    /// The rule in doubles. It is computed once and kept: a search asks for it thousands of times.
+    fn rule_in_doubles<const N: usize>(&self) -> Result<Option<Rule<f64, N>>, Invalid> {
         let name = format!("{:?} {N}", self.filter);
         let mut rules = RULES.lock().unwrap_or_else(PoisonError::into_inner);
-        let rule = if let Some(columns) = rules.get(&name) {
-            columns.as_ref().map(of_columns)
-        } else {
-            let rule = self.rule(|value| value)?;
-            rules.insert(name, rule.as_ref().map(as_columns));
-            rule
-        };
-        drop(rules);
-        self.setup_with_rule(|value| value, rule)
+        if let Some(columns) = rules.get(&name) {
+            return Ok(columns.as_ref().map(of_columns));
+        }
+        let rule = self.rule(|value| value)?;
+        rules.insert(name, rule.as_ref().map(as_columns));
+        Ok(rule)
     }
 
     fn setup_with_rule<T: Real, const N: usize, const M: usize>(
@@ -143,19 +104,16 @@ impl ProblemFile {
             mean: vector(&estimate.mean, number),
             covariance: matrix(&estimate.covariance, number),
         });
+        let problem = Problem {
+            modes: modes.collect(),
+            transition: self.transition.iter().map(|row| list(row)).collect(),
+            measurement: self.measurement(number)?,
+            measurement_noise: matrix(&self.noise, number),
+            rule,
+        };
         Ok(Setup {
-            equations: if rule.is_some() {
-                Equations::cubature()
-            } else {
-                Equations::kalman()
-            },
-            problem: Problem {
-                modes: modes.collect(),
-                transition: self.transition.iter().map(|row| list(row)).collect(),
-                measurement: self.measurement(number)?,
-                measurement_noise: matrix(&self.noise, number),
-                rule,
-            },
+            equations: Equations::standard(&problem),
+            problem,
             initial: Initial {
                 modes: estimates.collect(),
                 mode_probabilities: list(&self.initial.mode_probabilities),

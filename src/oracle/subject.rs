@@ -86,6 +86,15 @@ impl Default for Ready {
 /// The echo: a matrix that is not square, by rows, and a vector.
 pub const ECHO: ([[f64; 3]; 2], [f64; 3]) = ([[1.0, 2.0, 3.0], [4.0, 5.0, 7.0]], [1.0, 10.0, 100.0]);
 
+/// The echo's matrix times its vector.
+pub fn echoed() -> Vec<f64> {
+    let (matrix, vector) = ECHO;
+    matrix
+        .iter()
+        .map(|row| row.iter().zip(vector).map(|(a, b)| a * b).sum())
+        .collect()
+}
+
 impl Ready {
     /// Reads the message.
     ///
@@ -305,12 +314,7 @@ impl Subject for Planted {
             } else {
                 format!("Immaculate's own filter with {}", self.variants.join(" and "))
             },
-            echo: Some(
-                ECHO.0
-                    .iter()
-                    .map(|row| row.iter().zip(ECHO.1).map(|(a, b)| a * b).sum())
-                    .collect(),
-            ),
+            echo: Some(echoed()),
             ..Ready::default()
         })
     }
@@ -322,7 +326,7 @@ impl Subject for Planted {
                 reason: invalid.to_string(),
             };
         }
-        let (n, m, _) = problem.dimensions();
+        let Dimensions { n, m, .. } = problem.dimensions();
         match shape::dispatch(n, m, RunPlanted { problem, planted: self }) {
             Ok(Ok(answer)) => answer,
             Ok(Err(invalid)) | Err(invalid) => Answer::Broken(Broken::Invalid(invalid)),

@@ -174,6 +174,12 @@ impl Trace {
         Ok(())
     }
 
+    /// The numbers of a quantity if there are any and all are finite.
+    pub fn finite(&self, step: usize, quantity: Quantity, mode: usize) -> Option<&Vec<f64>> {
+        let values = self.get(step, quantity, mode);
+        values.filter(|values| values.iter().all(|value| value.is_finite()))
+    }
+
     /// The list of steps as JSON.
     pub fn steps_as_json(&self) -> Vec<Value> {
         self.to_json(|quantity, values| numbers_as_json(quantity, self.dimensions, values))

@@ -6,6 +6,7 @@ use super::{never_broken, table, wrapped};
 use crate::oracle::case::{BadCase, Case};
 use crate::oracle::certify::Certified;
 use crate::oracle::published::FLAGS;
+use crate::oracle::trace::Dimensions;
 use comfy_table::CellAlignment;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -20,13 +21,13 @@ pub fn list(cases: &[&Case]) -> String {
     never_broken(&mut table, 0);
     for case in cases {
         let problem = &case.problem;
-        let (n, m, r) = problem.dimensions();
+        let Dimensions { n, m, r, steps } = problem.dimensions();
         table.add_row(vec![
             problem.id.clone(),
             n.to_string(),
             m.to_string(),
             r.to_string(),
-            problem.measurements.len().to_string(),
+            steps.to_string(),
             problem.filter.name().to_owned(),
             problem.flags.join(" "),
         ]);

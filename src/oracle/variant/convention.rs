@@ -3,8 +3,9 @@
 //! After this file the reader knows each value of `conventions` that a program may declare. None of them is wrong.
 
 use super::super::setup::Setup;
-use super::{draws_points, number, square_root, standard, weights};
+use super::{draws_points, number, square_root, weights};
 use crate::gaussian::log_density;
+use crate::imm::Equations;
 use crate::matrix::ldl;
 use crate::number::Real;
 use nalgebra::SVector;
@@ -32,7 +33,7 @@ pub(super) fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &m
         "angle-mean-vector" => {
             if points {
                 equations.predicted_measurement = |problem, previous, now, j| {
-                    let usual = (standard(problem).predicted_measurement)(problem, previous, now, j);
+                    let usual = (Equations::standard(problem).predicted_measurement)(problem, previous, now, j);
                     SVector::from_fn(|row, _| {
                         if problem.measurement.is_angle(row) {
                             mean_direction(weights(problem).0, &now.measured_points[j], row)
@@ -49,12 +50,12 @@ pub(super) fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &m
                 if now.step == 1 {
                     return previous.mode_probabilities[j].clone();
                 }
-                (standard(problem).predicted_mode_probability)(problem, previous, now, j)
+                (Equations::standard(problem).predicted_mode_probability)(problem, previous, now, j)
             };
             equations.mixing_probability = |problem, previous, now, j, i| match (now.step, i == j) {
                 (1, true) => T::one(),
                 (1, false) => T::zero(),
-                _ => (standard(problem).mixing_probability)(problem, previous, now, j, i),
+                _ => (Equations::standard(problem).mixing_probability)(problem, previous, now, j, i),
             };
         }
         // ln L + (m/2) ln 2π

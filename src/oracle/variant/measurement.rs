@@ -3,9 +3,9 @@
 //! After this file the reader knows how R is lost or counted twice, and which points and means are taken for others.
 
 use super::super::setup::Setup;
-use super::{draws_points, standard, sum_of_covariance_weights, weights};
+use super::{draws_points, sum_of_covariance_weights, weights};
 use crate::filter::{cubature, kalman};
-use crate::imm::{Problem, Step};
+use crate::imm::{Equations, Problem, Step};
 use crate::number::Real;
 use nalgebra::{SMatrix, SVector};
 
@@ -129,5 +129,5 @@ fn with_noise<T: Real, const N: usize, const M: usize>(
         measurement_noise: noise,
         ..problem.clone()
     };
-    (standard(problem).innovation_covariance)(&other, previous, now, j)
+    (Equations::standard(problem).innovation_covariance)(&other, previous, now, j)
 }

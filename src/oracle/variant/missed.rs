@@ -3,10 +3,9 @@
 //! After this file the reader knows what programs do when there is nothing to update with.
 
 use super::super::setup::Setup;
-use super::standard;
 use crate::gaussian::log_density;
 use crate::imm::probability::{evidence, mode_probability, relative_likelihood};
-use crate::imm::{Problem, Step};
+use crate::imm::{Equations, Problem, Step};
 use crate::matrix::{NotPositiveDefinite, ldl};
 use crate::number::Real;
 use nalgebra::{SMatrix, SVector};
@@ -110,7 +109,7 @@ fn detected<T: Real, const N: usize, const M: usize>(
     now: &Step<T, N, M>,
     j: usize,
 ) -> Result<Step<T, N, M>, NotPositiveDefinite> {
-    let (e, mut now) = (standard(problem), now.clone());
+    let (e, mut now) = (Equations::standard(problem), now.clone());
     if e.draws_points {
         now.predicted_square_roots[j] = (e.predicted_square_root)(problem, previous, &now, j)?;
         for s in 0..now.predicted_points[j].len() {

@@ -40,7 +40,7 @@ mod square_root;
 mod update;
 
 use super::setup::Setup;
-use crate::imm::{Equations, Problem, Quantity, Step};
+use crate::imm::{Problem, Quantity, Step};
 use crate::model::Measurement;
 use crate::number::Real;
 use nalgebra::SMatrix;
@@ -182,15 +182,6 @@ pub fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setu
         || combination::apply(id, setup)
         || convention::apply(id, setup)
         || form::apply(id, setup)
-}
-
-/// The filter's own table, for an entry that uses the right equation on other values.
-fn standard<T: Real, const N: usize, const M: usize>(problem: &Problem<T, N, M>) -> Equations<T, N, M> {
-    if problem.rule.is_some() {
-        Equations::cubature()
-    } else {
-        Equations::kalman()
-    }
 }
 
 /// Whether the filter draws points.

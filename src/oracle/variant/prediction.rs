@@ -3,8 +3,9 @@
 //! After this file the reader knows the mistakes that can be made in F P Fᵀ + Q.
 
 use super::super::setup::Setup;
-use super::{draws_points, standard, sum_of_covariance_weights, weights};
+use super::{draws_points, sum_of_covariance_weights, weights};
 use crate::filter::{cubature, kalman, raw};
+use crate::imm::Equations;
 use crate::matrix::mirrored;
 use crate::number::{Field, Real};
 use nalgebra::SMatrix;
@@ -79,7 +80,7 @@ fn of_mean<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<
         // x̂⁻ = F F x̂⁰ʲ
         "motion-applied-twice" => {
             equations.predicted_mean = |problem, previous, now, j| {
-                let once = (standard(problem).predicted_mean)(problem, previous, now, j);
+                let once = (Equations::standard(problem).predicted_mean)(problem, previous, now, j);
                 kalman::predicted_mean(&problem.modes[j].transition, &once)
             }
         }
