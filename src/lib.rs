@@ -11,6 +11,7 @@
 //! | [`model`]      | how the target moves, what the sensor sees                                                |
 //! | [`filter`]     | one filter: Kalman and cubature                                                           |
 //! | [`imm`]        | the cycle                                                                                 |
+//! | [`steady`]     | steady gains, Riccati and Lyapunov equations, joint stability and its certificates         |
 //! | [`oracle`]     | certified cases, traces, and the judge of other filters                                   |
 //!
 //! Arrows run downwards: numbers know nothing, equations know numbers and matrices. Equations, filters and the cycle read no files,
@@ -27,6 +28,7 @@ pub mod paper;
 pub mod report;
 pub mod rule;
 pub mod statistics;
+pub mod steady;
 
 /// The README's example is run with the others.
 #[cfg(doctest)]

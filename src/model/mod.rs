@@ -1,10 +1,12 @@
 //! How the target moves and what the sensor sees.
 //!
-//! After this folder the reader knows the transition matrices and noise covariances of the two papers' models and where they come
-//! from ([`motion`]), the two measurements ([`measurement`]) and what happens to angles at ±π ([`angle`]).
+//! After this folder the reader knows the transition matrices and noise covariances of the papers' models and where they come from
+//! ([`motion`], and [`acceleration`] for one coordinate with its acceleration), the two measurements ([`measurement`]) and what happens
+//! to angles at ±π ([`angle`]).
 //!
 //! State order is [x, ẋ, y, ẏ] in metres and metres per second; turn rates are in radians per second, positive to the left.
 
+pub mod acceleration;
 pub mod angle;
 pub mod measurement;
 pub mod motion;

@@ -1,0 +1,129 @@
+//! Motion along one coordinate with the acceleration in the state: the two models of derbez2000.
+//!
+//! After this file the reader knows how a constant velocity and a constant acceleration model share one state [p, ṗ, p̈], so that their
+//! estimates can be mixed, and how their noises enter it. Each coordinate of the target is filtered by itself; what is measured is the
+//! position, H = [1 0 0].
+//!
+//! ```text
+//! constant velocity       F            the acceleration is set to zero at every step
+//! constant acceleration   F + ΔF       the acceleration is kept
+//! ```
+//!
+//! Units: metres, seconds. With the coordinates scaled by D = diag(1, t, t²) every matrix here has t = 1.
+
+use crate::number::Field;
+use nalgebra::{Matrix3, RowVector3, Vector3};
+
+/// Transition matrix of constant velocity, embedded in three dimensions — derbez2000 (5).
+///
+/// ```text
+///     ⎡ 1 t 0 ⎤
+/// F = ⎢ 0 1 0 ⎥
+///     ⎣ 0 0 0 ⎦
+/// ```
+///
+/// | paper | here       | unit | meaning       |
+/// |-------|------------|------|---------------|
+/// | t, Δt | `interval` | s    | the scan time |
+///
+/// Why: the model has no acceleration, so its estimate of one is zero; the last row says so, and the last column makes it forget the
+/// acceleration that mixing gave it.
+///
+/// Source: derbez2000, section 2.2.
+///
+/// Evidence: `the_two_motions_differ_by_the_acceleration` (symbolic).
+#[rustfmt::skip]
+pub fn embedded_constant_velocity<T: Field>(interval: &T) -> Matrix3<T> {
+    let (o, l, t) = (T::zero, T::one, || interval.clone());
+    Matrix3::new(
+        l(), t(), o(), //
+        o(), l(), o(), //
+        o(), o(), o(),
+    )
+}
+
+/// What an acceleration adds to the motion — derbez2000 (5).
+///
+/// ```text
+///      ⎡ 0 0 t²/2 ⎤
+/// ΔF = ⎢ 0 0 t    ⎥
+///      ⎣ 0 0 1    ⎦
+/// ```
+///
+/// | paper | here       | unit | meaning       |
+/// |-------|------------|------|---------------|
+/// | t     | `interval` | s    | the scan time |
+///
+/// Why: a constant acceleration a moves the position by a t²/2 and the velocity by a t, and stays.
+///
+/// Source: derbez2000, section 2.2.
+///
+/// Evidence: `the_two_motions_differ_by_the_acceleration` (symbolic).
+#[rustfmt::skip]
+pub fn acceleration_part<T: Field>(interval: &T) -> Matrix3<T> {
+    let [position, velocity, acceleration] = acceleration_response(interval).data.0[0].clone();
+    let o = T::zero;
+    Matrix3::new(
+        o(), o(), position, //
+        o(), o(), velocity, //
+        o(), o(), acceleration,
+    )
+}
+
+/// Transition matrix of constant acceleration, F + ΔF — derbez2000 (6).
+///
+/// ```text
+/// x₍n+1₎ = (F + ΔF) xₙ + G wₙ,   wₙ ~ N(0, Q)
+/// ```
+///
+/// | paper | here       | unit | meaning       |
+/// |-------|------------|------|---------------|
+/// | t     | `interval` | s    | the scan time |
+///
+/// Why: e^{At} with A = [0 1 0; 0 0 1; 0 0 0], which is nilpotent.
+///
+/// Source: derbez2000, section 2.2.
+///
+/// Evidence: `the_two_motions_differ_by_the_acceleration`, `constant_acceleration_composes_over_time` (symbolic).
+pub fn constant_acceleration<T: Field>(interval: &T) -> Matrix3<T> {
+    embedded_constant_velocity(interval) + acceleration_part(interval)
+}
+
+/// How an acceleration that is constant over a step enters the state of constant acceleration: G_a = [t²/2, t, 1]ᵀ.
+///
+/// Times a it is the paper's b, what the constant velocity model does not know of a target with the acceleration a: ΔF xₙ = b.
+///
+/// Source: derbez2000, sections 2.2 and 3, not numbered.
+///
+/// Errata: section 3 calls the noise inputs of "the CA/CV plant" G_v and G_a "respectively"; it is the other order.
+pub fn acceleration_response<T: Field>(interval: &T) -> Vector3<T> {
+    let t = || interval.clone();
+    Vector3::new(t() * t() / T::integer(2), t(), T::one())
+}
+
+/// How an acceleration that is constant over a step enters the state of constant velocity: G_v = [t²/2, t, 0]ᵀ.
+///
+/// Source: derbez2000, section 3, not numbered; printed for a state of two, and embedded here as F is in (5).
+pub fn embedded_velocity_response<T: Field>(interval: &T) -> Vector3<T> {
+    let t = || interval.clone();
+    Vector3::new(t() * t() / T::integer(2), t(), T::zero())
+}
+
+/// Noise covariance of rank one: G q Gᵀ.
+///
+/// | paper    | here       | unit    | meaning                                                             |
+/// |----------|------------|---------|---------------------------------------------------------------------|
+/// | G_v, G_a | `response` | s², s, 1 | [`embedded_velocity_response`] or [`acceleration_response`]           |
+/// | Q_v, Q_a | `variance` | (m/s²)² | variance of the acceleration, or of its change, over one step         |
+///
+/// Source: derbez2000, section 3, not numbered: "the noise matrix for the CV process noise is then G_v Q_v G_vᵀ".
+pub fn response_noise<T: Field>(response: &Vector3<T>, variance: &T) -> Matrix3<T> {
+    (response * response.transpose()) * variance.clone()
+}
+
+/// The matrix of a measured position, H = [1 0 0].
+///
+/// Source: derbez2000, section 2.2, not numbered.
+pub fn position_matrix<T: Field>() -> RowVector3<T> {
+    RowVector3::new(T::one(), T::zero(), T::zero())
+}

@@ -1,0 +1,8 @@
+//! The steady state: filters whose gains have settled, and whether what they compute stays bounded.
+//!
+//! After this folder the reader knows where fixed gains come from, what they do to a target that moves otherwise, and when several
+//! such filters that exchange their estimates are stable together.
+//!
+//! - [`gains`]: the closed forms of the α-β and α-β-γ filters.
+
+pub mod gains;
