@@ -75,7 +75,7 @@ pub fn cholesky<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> Result<SM
 }
 
 /// A pivot must be known to be positive.
-fn check_pivot<T: Real>(pivot: &T, row: usize, dimension: usize) -> Result<(), NotPositiveDefinite> {
+fn check_pivot<T: Field + PartialOrd>(pivot: &T, row: usize, dimension: usize) -> Result<(), NotPositiveDefinite> {
     let order = pivot.partial_cmp(&T::zero());
     if order == Some(Ordering::Greater) {
         return Ok(());
@@ -146,7 +146,9 @@ pub fn ldl<T: Field, const N: usize>(matrix: &SMatrix<T, N, N>) -> Ldl<T, N> {
 /// # Errors
 ///
 /// [`NotPositiveDefinite`] with the first pivot that is not.
-pub fn check_positive_definite<T: Real, const N: usize>(factors: &Ldl<T, N>) -> Result<(), NotPositiveDefinite> {
+pub fn check_positive_definite<T: Field + PartialOrd, const N: usize>(
+    factors: &Ldl<T, N>,
+) -> Result<(), NotPositiveDefinite> {
     for (row, pivot) in factors.diagonal.iter().enumerate() {
         check_pivot(pivot, row, N)?;
     }
@@ -255,7 +257,7 @@ pub fn is_symmetric<T: Field, const N: usize>(matrix: &SMatrix<T, N, N>) -> bool
 ///
 /// Evidence: `a_matrix_is_positive_semidefinite_exactly_when_no_pivot_is_negative`,
 /// `a_covariance_of_low_rank_is_positive_semidefinite_as_rounded` (property).
-pub fn is_positive_semidefinite<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> bool {
+pub fn is_positive_semidefinite<T: Field + PartialOrd, const N: usize>(matrix: &SMatrix<T, N, N>) -> bool {
     if !all_finite(matrix) {
         return false;
     }
@@ -293,7 +295,7 @@ pub fn is_positive_semidefinite<T: Real, const N: usize>(matrix: &SMatrix<T, N, 
 }
 
 /// Takes out the row whose pivot is the greatest part of its diagonal entry.
-fn take_greatest_pivot<T: Real, const N: usize>(
+fn take_greatest_pivot<T: Field + PartialOrd, const N: usize>(
     rows: &mut Vec<usize>,
     matrix: &SMatrix<T, N, N>,
     rest: &SMatrix<T, N, N>,

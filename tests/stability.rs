@@ -11,9 +11,13 @@ use immaculate::model::acceleration::{
     acceleration_part, acceleration_response, constant_acceleration, embedded_constant_velocity,
     embedded_velocity_response, position_matrix, response_noise,
 };
-use immaculate::number::{Enclosure, Field, Rational, RationalFunction};
+use immaculate::number::{Enclosure, Field, Rational, RationalFunction, Real};
 use immaculate::steady::gains;
-use nalgebra::{Matrix1, Matrix3, Vector3};
+use immaculate::steady::linear::{solve, stein};
+use immaculate::steady::polynomial::{characteristic_polynomial, has_radius_below, is_stable_polynomial, rows_of};
+use immaculate::steady::reach::{polynomial_text, unseen_part};
+use immaculate::steady::riccati::{NoSteadyState, Riccati, SteadyState};
+use nalgebra::{Matrix1, Matrix3, SMatrix, Vector3};
 use num_traits::{One, Zero};
 
 type Unknown = RationalFunction;
@@ -137,4 +141,318 @@ fn the_damping_roots_give_back_their_index() {
             assert!((value / double - 1.0).abs() < bound, "{text}: {value}");
         }
     }
+}
+
+// Polynomials, linear systems, what is not seen (exact)
+
+fn rational(text: &str) -> Rational {
+    let (p, q) = text.split_once('/').unwrap_or((text, "1"));
+    Rational::from_decimal(p).unwrap() / Rational::from_decimal(q).unwrap()
+}
+
+fn rationals<const R: usize, const C: usize>(rows: [[&str; C]; R]) -> SMatrix<Rational, R, C> {
+    SMatrix::from_fn(|i, j| rational(rows[i][j]))
+}
+
+#[test]
+fn a_matrix_is_a_root_of_its_characteristic_polynomial() {
+    // Symbolic: Cayley and Hamilton, for all 3 × 3 matrices.
+    let a = Matrix3::<Unknown>::from_fn(|i, j| unknown(&format!("a{i}{j}")));
+    let coefficients = characteristic_polynomial(&rows_of(&a));
+    let mut sum = Matrix3::<Unknown>::zeros();
+    for coefficient in coefficients.iter().rev() {
+        sum = sum * &a + Matrix3::identity() * coefficient.clone();
+    }
+    assert_eq!(sum, Matrix3::zeros());
+    assert_eq!(coefficients[3], Unknown::one());
+}
+
+#[test]
+fn the_schur_cohn_test_knows_where_roots_are() {
+    // Polynomials from their roots, so that the answer is known: pairs re ± i·im and reals, among them some very near the circle.
+    let roots = [
+        "0",
+        "1/2",
+        "-9/10",
+        "999999/1000000",
+        "1",
+        "-1",
+        "1000001/1000000",
+        "-3",
+    ];
+    let pairs = [("3/5", "3/5"), ("-3/5", "4/5"), ("3/5", "81/100"), ("0", "99/100")];
+    let times = |p: &[Rational], q: &[Rational]| {
+        let mut product = vec![Rational::zero(); p.len() + q.len() - 1];
+        for (i, a) in p.iter().enumerate() {
+            for (j, b) in q.iter().enumerate() {
+                product[i + j] += a.clone() * b.clone();
+            }
+        }
+        product
+    };
+    let mut inside_and_outside = [0, 0];
+    for (first, (re, im)) in roots.iter().flat_map(|root| pairs.iter().map(move |pair| (root, pair))) {
+        for second in roots {
+            let (first, second, re, im) = (rational(first), rational(second), rational(re), rational(im));
+            let square = re.clone() * re.clone() + im.clone() * im.clone();
+            let pair = [square.clone(), -(re.clone() + re), Rational::one()];
+            let of_real = |root: &Rational| [-root.clone(), Rational::one()];
+            let polynomial = times(&times(&pair, &of_real(&first)), &of_real(&second));
+            let expected = square < Rational::one() && first.abs() < Rational::one() && second.abs() < Rational::one();
+            assert_eq!(is_stable_polynomial(&polynomial), Some(expected));
+            inside_and_outside[usize::from(expected)] += 1;
+        }
+    }
+    assert!(
+        inside_and_outside.iter().all(|count| *count > 30),
+        "both answers are given"
+    );
+    // With a bound: the spectral radius of a rotation by half its length is one half.
+    let rotation = vec![
+        vec![rational("0"), rational("-1/2")],
+        vec![rational("1/2"), rational("0")],
+    ];
+    assert_eq!(has_radius_below(&rotation, &rational("1/2")), Some(false));
+    assert_eq!(has_radius_below(&rotation, &rational("500001/1000000")), Some(true));
+    // On enclosures that straddle the circle there is no answer.
+    Enclosure::with_precision(64, || {
+        let unsure = Enclosure::around(1.0, 1e-9);
+        assert_eq!(is_stable_polynomial(&[unsure, Enclosure::integer(1)]), None);
+    });
+}
+
+#[test]
+fn elimination_solves_what_can_be_solved() {
+    // A zero in the first place, so that rows must be exchanged.
+    let matrix = rationals([["0", "2", "1"], ["3", "1/2", "0"], ["1", "1", "-1/3"]]);
+    let solution = solve(rows_of(&matrix), rows_of(&SMatrix::<Rational, 3, 3>::identity())).unwrap();
+    let inverse = SMatrix::<Rational, 3, 3>::from_fn(|i, j| solution[i][j].clone());
+    assert_eq!(matrix * inverse, Matrix3::identity());
+    let singular = rationals([["1", "2"], ["2", "4"]]);
+    assert_eq!(
+        solve(rows_of(&singular), rows_of(&SMatrix::<Rational, 2, 2>::identity())),
+        None
+    );
+}
+
+#[test]
+fn the_stein_equation_is_solved_exactly() {
+    let a = rationals([["1/2", "-1", "0"], ["1/3", "1/5", "2"], ["0", "-1/7", "1/4"]]);
+    let c = rationals([["1", "2", "0"], ["2", "-3", "1/2"], ["0", "1/2", "5"]]);
+    let x = stein(&a, &c).unwrap();
+    assert_eq!(&a * &x * a.transpose() + &c, x);
+    assert_eq!(x, x.transpose());
+    // Two eigenvalues whose product is one: no solution, or many.
+    let a = rationals([["2", "0"], ["0", "1/2"]]);
+    assert_eq!(stein(&a, &SMatrix::identity()), None);
+}
+
+#[test]
+fn what_is_not_seen_and_does_not_decay_is_named() {
+    let part = |motion, sensor: [[&str; 3]; 1]| {
+        let sensor = rationals(sensor);
+        polynomial_text(&unseen_part(&rows_of(&rationals::<3, 3>(motion)), &rows_of(&sensor)))
+    };
+    let acceleration = [["1", "1", "1/2"], ["0", "1", "1"], ["0", "0", "1"]];
+    assert_eq!(part(acceleration, [["1", "0", "0"]]), "1");
+    // Measured velocity never shows the position, measured acceleration neither of the two.
+    assert_eq!(part(acceleration, [["0", "1", "0"]]), "λ − 1");
+    assert_eq!(part(acceleration, [["0", "0", "1"]]), "λ^2 − 2λ + 1");
+    assert_eq!(part(acceleration, [["0", "0", "0"]]), "λ^3 − 3λ^2 + 3λ − 1");
+    // The embedded acceleration of constant velocity is not seen, and decays at once.
+    assert_eq!(
+        part([["1", "1", "0"], ["0", "1", "0"], ["0", "0", "0"]], [["1", "0", "0"]]),
+        "λ"
+    );
+}
+
+// The Riccati equation (exact)
+
+/// A filter of one position with constant velocity or acceleration, from decimals.
+fn coordinate(motion: Matrix3<Rational>, response: &Vector3<Rational>, q: &str, r: &str) -> Riccati<Rational, 3, 1> {
+    Riccati {
+        transition: motion,
+        measurement: position_matrix(),
+        noise: response_noise(response, &rational(q)),
+        measurement_noise: Matrix1::new(rational(r)),
+    }
+}
+
+#[test]
+fn doubling_and_recursion_have_the_same_limit() {
+    let t = rational("2");
+    let problem = coordinate(constant_acceleration(&t), &acceleration_response(&t), "5", "1/20");
+    // Three doublings from Q are eight steps of the recursion from Q.
+    let mut predicted = problem.noise.clone();
+    for _ in 0..7 {
+        predicted = problem.next(&predicted);
+    }
+    assert_eq!(problem.doubled(3), Some(predicted));
+}
+
+#[test]
+fn a_steady_state_is_proven_by_two_bounds() {
+    // The paper's noises, and tracking indices from 10⁻⁶ to 10⁶.
+    for (q, r, t) in [
+        ("5", "1/20", "2"),
+        ("5", "1/2", "1"),
+        ("1", "1000000000000", "1"),
+        ("1000000000000", "1", "1"),
+    ] {
+        let t = rational(t);
+        let velocity = coordinate(embedded_constant_velocity(&t), &embedded_velocity_response(&t), q, r);
+        let acceleration = coordinate(constant_acceleration(&t), &acceleration_response(&t), q, r);
+        let proven = [&velocity, &acceleration].map(|problem| {
+            let proof = SteadyState::certify(problem, 400).unwrap();
+            proof.check(problem).unwrap();
+            Enclosure::with_precision(300, || proof.gain(problem))
+        });
+        // The closed forms, from the same noises, agree to the last digit that the bounds determine.
+        let closed = Enclosure::with_precision(300, || {
+            let number = |value: &Rational| Enclosure::rational(value);
+            let index = gains::tracking_index(&number(&rational(q)), &number(&rational(r)), &number(&t));
+            [
+                gains::alpha_beta_gain(&gains::alpha_beta_root(&index), &number(&t)),
+                gains::alpha_beta_gamma_gain(&gains::alpha_beta_gamma_root(&index), &number(&t)),
+            ]
+        });
+        for (proven, closed) in proven.iter().flatten().zip(closed.iter().flatten()) {
+            let difference = Enclosure::with_precision(300, || proven.clone() - closed.clone());
+            assert!(
+                difference.contains(&Rational::zero()),
+                "{q}, {r}: {proven} and {closed}"
+            );
+            assert!(difference.width() < 1e-40, "{q}, {r}: {difference}");
+        }
+    }
+}
+
+#[test]
+fn a_spoilt_bound_proves_nothing() {
+    let t = rational("2");
+    let problem = coordinate(constant_acceleration(&t), &acceleration_response(&t), "5", "1/20");
+    let proof = SteadyState::certify(&problem, 100).unwrap();
+    let inequality = |proof: &SteadyState<3>| match proof.check(&problem) {
+        Err(NoSteadyState::Inequality { inequality, .. }) => inequality,
+        other => panic!("{other:?}"),
+    };
+    // The bounds exchanged, one taken for both, and each moved over the solution.
+    let exchanged = SteadyState {
+        lower: proof.upper.clone(),
+        upper: proof.lower.clone(),
+    };
+    assert_eq!(inequality(&exchanged), "f(L) − L ≻ 0");
+    let collapsed = SteadyState {
+        upper: proof.lower.clone(),
+        ..proof.clone()
+    };
+    assert_eq!(inequality(&collapsed), "U − L ≻ 0");
+    let width = &proof.upper - &proof.lower;
+    let too_high = SteadyState {
+        lower: &proof.lower + &width,
+        upper: &proof.upper + &width,
+    };
+    assert_eq!(inequality(&too_high), "f(L) − L ≻ 0");
+    let too_low = SteadyState {
+        lower: &proof.lower - &width,
+        upper: &proof.upper - &width,
+    };
+    assert_eq!(inequality(&too_low), "U − f(U) ≻ 0");
+    // A filter that is not this one.
+    let other = coordinate(constant_acceleration(&t), &acceleration_response(&t), "5", "1/2");
+    assert!(proof.check(&other).is_err());
+}
+
+#[test]
+fn known_examples_of_the_riccati_equation_are_solved() {
+    // Benner, Laub and Mehrmann's collection of discrete examples, transposed into the filter's form. Their example 1 has an unstable
+    // motion and the solution (1 + √5)/2 · [9 6; 6 4].
+    let problem = Riccati {
+        transition: rationals([["4", "-9/2"], ["3", "-7/2"]]),
+        measurement: rationals([["1", "-1"]]),
+        noise: rationals([["9", "6"], ["6", "4"]]),
+        measurement_noise: Matrix1::new(Rational::one()),
+    };
+    let proof = SteadyState::certify(&problem, 300).unwrap();
+    Enclosure::with_precision(300, || {
+        let golden = (Enclosure::integer(1) + Enclosure::integer(5).sqrt()) / Enclosure::integer(2);
+        for (i, j, factor) in [(0, 0, 9), (0, 1, 6), (1, 1, 4)] {
+            let difference = proof.entry(i, j) - golden.clone() * Enclosure::integer(factor);
+            assert!(
+                difference.contains(&Rational::zero()) && difference.width() < 1e-40,
+                "{difference}"
+            );
+        }
+    });
+    // Their example 2.3: F = [0 ε; 0 0]ᵀ with ε = 10⁶, so that the solution diag(1, 1 + ε²) has entries of very different size.
+    let problem = Riccati {
+        transition: rationals([["0", "0"], ["1000000", "0"]]),
+        measurement: rationals([["0", "1"]]),
+        noise: SMatrix::<Rational, 2, 2>::identity(),
+        measurement_noise: Matrix1::new(Rational::one()),
+    };
+    let proof = SteadyState::certify(&problem, 300).unwrap();
+    Enclosure::with_precision(300, || {
+        for (i, value) in [(0, "1"), (1, "1000000000001")] {
+            assert!(proof.entry(i, i).contains(&rational(value)), "{}", proof.entry(i, i));
+        }
+    });
+    // A measurement noise of 10⁻¹² beside a motion that grows (as in their example 2.4), and one that is almost not detectable.
+    for (epsilon, r) in [("1/1000000", "1/1000000000000"), ("1/1000", "1")] {
+        let problem = Riccati {
+            transition: rationals([["2", "0"], ["0", "1/2"]]),
+            measurement: SMatrix::<Rational, 1, 2>::new(rational(epsilon), Rational::one()),
+            noise: SMatrix::<Rational, 2, 2>::identity(),
+            measurement_noise: Matrix1::new(rational(r)),
+        };
+        SteadyState::certify(&problem, 400).unwrap();
+    }
+}
+
+#[test]
+fn a_problem_without_a_steady_state_is_refused_with_its_reason() {
+    let t = Rational::one();
+    let motion = constant_acceleration(&t);
+    let without_noise = coordinate(motion.clone(), &acceleration_response(&t), "0", "1");
+    let error = SteadyState::certify(&without_noise, 100).unwrap_err();
+    assert!(
+        matches!(&error, NoSteadyState::NotStabilisable { polynomial } if polynomial == "λ^3 − 3λ^2 + 3λ − 1"),
+        "{error}"
+    );
+    let mut unmeasured = coordinate(motion.clone(), &acceleration_response(&t), "1", "1");
+    unmeasured.measurement = rationals([["0", "1", "0"]]);
+    let error = SteadyState::certify(&unmeasured, 100).unwrap_err();
+    assert!(
+        matches!(&error, NoSteadyState::NotDetectable { polynomial } if polynomial == "λ − 1"),
+        "{error}"
+    );
+    for (r, field) in [("0", "R"), ("-1", "R")] {
+        let wrong = coordinate(motion.clone(), &acceleration_response(&t), "1", r);
+        let error = SteadyState::certify(&wrong, 100).unwrap_err();
+        assert!(
+            matches!(&error, NoSteadyState::Invalid { field: f, .. } if *f == field),
+            "{error}"
+        );
+    }
+    let wrong = coordinate(motion.clone(), &acceleration_response(&t), "-1", "1");
+    assert!(matches!(
+        SteadyState::certify(&wrong, 100),
+        Err(NoSteadyState::Invalid { field: "Q", .. })
+    ));
+    // Stabilisability is not necessary: a mode that no noise reaches and that grows is measured and so held; one on the circle is not.
+    let held = |growth: &str| Riccati {
+        transition: Matrix1::new(rational(growth)),
+        measurement: Matrix1::new(Rational::one()),
+        noise: Matrix1::new(Rational::zero()),
+        measurement_noise: Matrix1::new(Rational::one()),
+    };
+    assert!(SteadyState::certify(&held("1"), 100).is_err());
+    assert!(
+        SteadyState {
+            lower: Matrix1::new(rational("2")),
+            upper: Matrix1::new(rational("4"))
+        }
+        .check(&held("2"))
+        .is_ok()
+    );
 }

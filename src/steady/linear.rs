@@ -1,0 +1,84 @@
+//! Systems of linear equations of any size, by elimination.
+//!
+//! After this file the reader knows how the Lyapunov equation is solved exactly, and what the doubling iteration of the Riccati equation
+//! divides by.
+
+use super::polynomial::Rows;
+use crate::number::Field;
+use nalgebra::SMatrix;
+
+/// The solution X of A X = B; none if a pivot that is known to differ from zero cannot be found.
+///
+/// The pivot is the greatest of its column as far as the number system can tell, which in exact arithmetic costs nothing and in rounded
+/// arithmetic keeps the digits.
+///
+/// Source: Golub and Van Loan, Matrix Computations, 4th edition, section 3.4.
+///
+/// Evidence: `elimination_solves_what_can_be_solved` (exact).
+pub fn solve<T: Field + PartialOrd>(mut matrix: Rows<T>, mut right_side: Rows<T>) -> Option<Rows<T>> {
+    let n = matrix.len();
+    for column in 0..n {
+        let pivot = greatest(&matrix, column)?;
+        matrix.swap(column, pivot);
+        right_side.swap(column, pivot);
+        let divisor = matrix[column][column].clone();
+        let (pivot_row, pivot_side) = (matrix[column].clone(), right_side[column].clone());
+        for row in (0..n).filter(|row| *row != column) {
+            let factor = matrix[row][column].clone() / divisor.clone();
+            subtract(&mut matrix[row], &pivot_row, &factor);
+            subtract(&mut right_side[row], &pivot_side, &factor);
+        }
+    }
+    for (row, side) in right_side.iter_mut().enumerate() {
+        for entry in side {
+            *entry /= matrix[row][row].clone();
+        }
+    }
+    Some(right_side)
+}
+
+fn subtract<T: Field>(row: &mut [T], pivot_row: &[T], factor: &T) {
+    for (entry, pivot) in row.iter_mut().zip(pivot_row) {
+        *entry -= pivot.clone() * factor.clone();
+    }
+}
+
+/// The row from the diagonal down with the greatest entry of a column; none if no entry is known to differ from zero.
+fn greatest<T: Field + PartialOrd>(matrix: &Rows<T>, column: usize) -> Option<usize> {
+    let square = |row: usize| matrix[row][column].clone() * matrix[row][column].clone();
+    let mut best = None;
+    let mut greatest = T::zero();
+    for row in column..matrix.len() {
+        let candidate = square(row);
+        if candidate > greatest {
+            greatest = candidate;
+            best = Some(row);
+        }
+    }
+    best
+}
+
+/// The solution X of X = A X Aᵀ + C; none if there is not exactly one.
+///
+/// Source: the linear system for the entries of X, (I − A ⊗ A) vec X = vec C.
+///
+/// Evidence: `the_stein_equation_is_solved_exactly` (exact).
+pub fn stein<T: Field + PartialOrd, const N: usize>(
+    a: &SMatrix<T, N, N>,
+    constant: &SMatrix<T, N, N>,
+) -> Option<SMatrix<T, N, N>> {
+    let place = |index: usize| (index / N, index % N);
+    let row = |index: usize| {
+        let (i, j) = place(index);
+        let entry = |other: usize| {
+            let (k, l) = place(other);
+            let own = if index == other { T::one() } else { T::zero() };
+            own - a[(i, k)].clone() * a[(j, l)].clone()
+        };
+        (0..N * N).map(entry).collect()
+    };
+    let matrix: Rows<T> = (0..N * N).map(row).collect();
+    let side = (0..N * N).map(|index| vec![constant[place(index)].clone()]).collect();
+    let solved = solve(matrix, side)?;
+    Some(SMatrix::from_fn(|i, j| solved[i * N + j][0].clone()))
+}

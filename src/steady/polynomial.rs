@@ -1,0 +1,113 @@
+//! The characteristic polynomial of a matrix, and whether all its roots are inside the unit circle.
+//!
+//! After this file the reader knows how the stability of a matrix is decided without computing an eigenvalue: by additions and
+//! multiplications alone, so that in exact rational arithmetic the answer is a proof, and on enclosures a proof or no answer.
+//!
+//! A matrix is a list of rows here, of any size: the frozen criterion joins several filters into one matrix.
+
+use crate::number::Field;
+use nalgebra::SMatrix;
+use std::cmp::Ordering;
+
+/// A matrix as a list of rows.
+pub type Rows<T> = Vec<Vec<T>>;
+
+/// The rows of a matrix.
+///
+/// Source: a change of form.
+pub fn rows_of<T: Field, const R: usize, const C: usize>(matrix: &SMatrix<T, R, C>) -> Rows<T> {
+    let row = |i: usize| (0..C).map(|j| matrix[(i, j)].clone()).collect();
+    (0..R).map(row).collect()
+}
+
+/// The characteristic polynomial det(λI − A), its coefficients from λ⁰ up to λⁿ.
+///
+/// ```text
+/// M₁ = I,   cₙ₋ₖ = −tr(A Mₖ)/k,   Mₖ₊₁ = A Mₖ + cₙ₋ₖ I
+/// ```
+///
+/// Source: Faddeev and Leverrier; Gantmacher, The Theory of Matrices, chapter IV, section 5.
+///
+/// Evidence: `a_matrix_is_a_root_of_its_characteristic_polynomial` (symbolic).
+pub fn characteristic_polynomial<T: Field>(matrix: &Rows<T>) -> Vec<T> {
+    let n = matrix.len();
+    let mut coefficients = vec![T::one()];
+    let mut power = identity(n);
+    for k in 1..=n {
+        let product = times(matrix, &power);
+        let mut trace = T::zero();
+        for (i, row) in product.iter().enumerate() {
+            trace += row[i].clone();
+        }
+        let coefficient = -trace / T::integer(i64::try_from(k).unwrap_or(i64::MAX));
+        power = product;
+        for (i, row) in power.iter_mut().enumerate() {
+            row[i] += coefficient.clone();
+        }
+        coefficients.push(coefficient);
+    }
+    coefficients.reverse();
+    coefficients
+}
+
+fn identity<T: Field>(n: usize) -> Rows<T> {
+    let entry = |i, j| if i == j { T::one() } else { T::zero() };
+    (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect()
+}
+
+fn times<T: Field>(left: &Rows<T>, right: &Rows<T>) -> Rows<T> {
+    let entry = |row: &Vec<T>, j: usize| {
+        let mut sum = T::zero();
+        for (a, b) in row.iter().zip(right) {
+            sum += a.clone() * b[j].clone();
+        }
+        sum
+    };
+    left.iter()
+        .map(|row| (0..right.len()).map(|j| entry(row, j)).collect())
+        .collect()
+}
+
+/// Whether all roots of a polynomial (coefficients from λ⁰ up, the last not zero) are inside the unit circle; none if the number
+/// system cannot tell.
+///
+/// ```text
+/// p = a₀ + … + aₙ λⁿ is stable   exactly if   |a₀| < |aₙ| and (aₙ p − a₀ p*)/λ is stable,   p* = aₙ + … + a₀ λⁿ
+/// ```
+///
+/// Why: |p| = |p*| on the circle, so with |a₀| < |aₙ| Rouché's theorem gives aₙ p and aₙ p − a₀ p* as many roots inside; the second
+/// has one at zero, which is divided out. With |a₀| ≥ |aₙ| the product of the roots has a magnitude of one or more.
+///
+/// Source: Schur 1917, Cohn 1922.
+///
+/// Evidence: `the_schur_cohn_test_knows_where_roots_are` (exact).
+pub fn is_stable_polynomial<T: Field + PartialOrd>(coefficients: &[T]) -> Option<bool> {
+    let Some((highest, rest)) = coefficients.split_last().filter(|(_, rest)| !rest.is_empty()) else {
+        return Some(true);
+    };
+    let lowest = &rest[0];
+    let squares = |value: &T| value.clone() * value.clone();
+    match squares(lowest).partial_cmp(&squares(highest))? {
+        Ordering::Less => {}
+        Ordering::Equal | Ordering::Greater => return Some(false),
+    }
+    let n = rest.len();
+    let next = |k: usize| highest.clone() * coefficients[k].clone() - lowest.clone() * coefficients[n - k].clone();
+    let reduced: Vec<T> = (1..=n).map(next).collect();
+    is_stable_polynomial(&reduced)
+}
+
+/// Whether the spectral radius of a matrix is below a bound; none if the number system cannot tell.
+///
+/// Source: the roots of det(λI − A) are bound times those of the polynomial with coefficients cₖ boundᵏ.
+///
+/// Evidence: `the_schur_cohn_test_knows_where_roots_are` (exact).
+pub fn has_radius_below<T: Field + PartialOrd>(matrix: &Rows<T>, bound: &T) -> Option<bool> {
+    let mut scaled = characteristic_polynomial(matrix);
+    let mut power = T::one();
+    for coefficient in &mut scaled {
+        *coefficient *= power.clone();
+        power *= bound.clone();
+    }
+    is_stable_polynomial(&scaled)
+}

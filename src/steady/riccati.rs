@@ -1,0 +1,322 @@
+//! The Riccati equation of the steady Kalman filter: two ways to its solution, and a proof that it is the one.
+//!
+//! After this file the reader knows when a Kalman filter has a steady state, how it is found, and how two rational matrices prove
+//! that it exists, is the only one that stabilises, and lies between them.
+//!
+//! ```text
+//! P = f(P),   f(P) = F (P − P Hᵀ (H P Hᵀ + R)⁻¹ H P) Fᵀ + Q         P: predicted covariance
+//! ```
+//!
+//! | way                  | what it does                                                                              |
+//! |----------------------|-------------------------------------------------------------------------------------------|
+//! | [`Riccati::next`]    | one step of the filter's own recursion; the solution is its limit                          |
+//! | [`Riccati::doubled`] | the same limit in steps that each double the number of recursions                          |
+//! | [`SteadyState`]      | a lower and an upper bound, checked in exact arithmetic                                    |
+
+use super::linear::{self, stein};
+use super::polynomial::{is_stable_polynomial, rows_of};
+use super::reach::{polynomial_text, unseen_part};
+use crate::filter::{kalman, update};
+use crate::matrix::{
+    NotPositiveDefinite, check_positive_definite, is_positive_semidefinite, is_symmetric, ldl, mirrored,
+};
+use crate::number::{Enclosure, Field, Rational};
+use nalgebra::SMatrix;
+
+/// What a steady Kalman filter is made of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Riccati<T, const N: usize, const M: usize> {
+    /// F.
+    pub transition: SMatrix<T, N, N>,
+    /// H.
+    pub measurement: SMatrix<T, M, N>,
+    /// Q, positive semidefinite.
+    pub noise: SMatrix<T, N, N>,
+    /// R, positive definite.
+    pub measurement_noise: SMatrix<T, M, M>,
+}
+
+impl<T: Field, const N: usize, const M: usize> Riccati<T, N, M> {
+    /// The predicted covariance a step later — derbez2000 (2), (4).
+    ///
+    /// ```text
+    /// S = H P Hᵀ + R,   K = P Hᵀ S⁻¹,   f(P) = F (P − K S Kᵀ) Fᵀ + Q
+    /// ```
+    ///
+    /// | paper      | here        | shape | meaning                    |
+    /// |------------|-------------|-------|----------------------------|
+    /// | P₍n∣n−1₎   | `predicted` | N × N | predicted covariance       |
+    /// | F, Q       | of the mode | N × N | motion and process noise   |
+    /// | H, R       | of the sensor | M × N, M × M | measurement and its noise |
+    ///
+    /// Why: update and prediction of the Kalman filter; covariances do not depend on what is measured.
+    ///
+    /// Evidence: `the_alpha_beta_gain_solves_the_riccati_equation` (symbolic).
+    #[must_use]
+    pub fn next(&self, predicted: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+        let gain = self.gain(predicted);
+        let innovation = kalman::innovation_covariance(&self.measurement, predicted, &self.measurement_noise);
+        let updated = update::updated_covariance(predicted, &gain, &innovation);
+        kalman::predicted_covariance(&self.transition, &updated, &self.noise)
+    }
+
+    /// The gain at a predicted covariance, K = P Hᵀ (H P Hᵀ + R)⁻¹ — derbez2000 (2), (4).
+    pub fn gain(&self, predicted: &SMatrix<T, N, N>) -> SMatrix<T, N, M> {
+        let innovation = kalman::innovation_covariance(&self.measurement, predicted, &self.measurement_noise);
+        update::gain(
+            &kalman::cross_covariance(predicted, &self.measurement),
+            &ldl(&innovation),
+        )
+    }
+
+    /// The matrix that carries the filter's error from one update to the next, A = (I − K H) F.
+    ///
+    /// Source: derbez2000, section 2.2, the definition of A₊ below (7).
+    pub fn closed_loop(&self, gain: &SMatrix<T, N, M>) -> SMatrix<T, N, N> {
+        (SMatrix::identity() - gain * &self.measurement) * &self.transition
+    }
+}
+
+impl<T: Field + PartialOrd, const N: usize, const M: usize> Riccati<T, N, M> {
+    /// The predicted covariance after 2ᵏ steps of the recursion from Q, for k doublings; none where it cannot be computed.
+    ///
+    /// ```text
+    /// A₀ = Fᵀ, G₀ = Hᵀ R⁻¹ H, P₀ = Q
+    /// A₊ = A W A,   G₊ = G + A W G Aᵀ,   P₊ = P + Aᵀ P W A,   W = (I + G P)⁻¹
+    /// ```
+    ///
+    /// Why: a step is P ↦ Q + F P (I + G P)⁻¹ Fᵀ, a fractional map, and the composition of two maps of this form is again of this form.
+    ///
+    /// Source: Anderson 1978; Chu, Fan, Lin and Wang 2004.
+    ///
+    /// Evidence: `doubling_and_recursion_have_the_same_limit` (exact).
+    pub fn doubled(&self, doublings: usize) -> Option<SMatrix<T, N, N>> {
+        let inverse_noise = crate::matrix::solve(&ldl(&self.measurement_noise), &self.measurement);
+        let mut a = self.transition.transpose();
+        let mut g = self.measurement.transpose() * inverse_noise;
+        let mut p = self.noise.clone();
+        for _ in 0..doublings {
+            let w = inverse(&(SMatrix::identity() + &g * &p))?;
+            let aw = &a * &w;
+            let next_p = &p + a.transpose() * &p * &w * &a;
+            g = mirrored(&g + &aw * &g * a.transpose());
+            a = aw * a;
+            p = mirrored(next_p);
+        }
+        Some(p)
+    }
+}
+
+/// The inverse of a matrix; none if it has none.
+fn inverse<T: Field + PartialOrd, const N: usize>(matrix: &SMatrix<T, N, N>) -> Option<SMatrix<T, N, N>> {
+    let identity = rows_of(&SMatrix::<T, N, N>::identity());
+    let solved = linear::solve(rows_of(matrix), identity)?;
+    Some(SMatrix::from_fn(|i, j| solved[i][j].clone()))
+}
+
+/// Two rational matrices between which the stabilising solution of a Riccati equation lies: a proof that anyone can check.
+///
+/// ```text
+/// R + H L Hᵀ ≻ 0,   f(L) ≻ L,   L ≺ U,   f(U) ≺ U
+/// ```
+///
+/// Why these four inequalities prove it. As long as R + H P Hᵀ ≻ 0, f(P) is the least over all gains K of
+/// (F − KH) P (F − KH)ᵀ + Q + K R Kᵀ (with K for F K), so f is monotone and concave there.
+///
+/// - *Existence*: L ≺ f(L) ⪯ f(f(L)) ⪯ … ⪯ U rises and is bounded; its limit P is a fixed point in [L, U].
+/// - *Stabilisation*: with D = P − L concavity gives D ≻ f(P) − f(L) ⪰ A D Aᵀ for A = F(I − KH) at P. So D ≻ 0 and D − A D Aᵀ ≻ 0, which
+///   is Lyapunov's condition that the spectral radius of A is below one.
+/// - *Uniqueness*: any fixed point P′ has P′ − P = f(P′) − f(P) ⪯ A (P′ − P) Aᵀ ⪯ … → 0, so P is the greatest; another that stabilises
+///   would be the greatest too.
+///
+/// Source: Lancaster and Rodman, Algebraic Riccati Equations, 1995, for the monotonicity; the certificate is put together here.
+///
+/// Evidence: `a_steady_state_is_proven_by_two_bounds`, `a_spoilt_bound_proves_nothing` (exact).
+#[derive(Debug, Clone, PartialEq)]
+pub struct SteadyState<const N: usize> {
+    /// L.
+    pub lower: SMatrix<Rational, N, N>,
+    /// U.
+    pub upper: SMatrix<Rational, N, N>,
+}
+
+/// Why a steady state is not proven.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum NoSteadyState {
+    /// A matrix of the problem is not what it must be.
+    #[error("`{field}` {reason} (derbez2000 (2))")]
+    Invalid {
+        /// The field.
+        field: &'static str,
+        /// What it is not.
+        reason: String,
+    },
+    /// There is a mode that is not measured and does not decay.
+    #[error(
+        "the pair (H, F) is not detectable: a part of the state that is not measured, with the characteristic polynomial {polynomial}, \
+         does not decay (derbez2000, section 2.2)"
+    )]
+    NotDetectable {
+        /// The characteristic polynomial of the part.
+        polynomial: String,
+    },
+    /// There is a mode that no noise reaches and that does not decay.
+    #[error(
+        "the pair (F, Q) is not stabilisable: a part of the state that no noise reaches, with the characteristic polynomial \
+         {polynomial}, does not decay, so that the gain falls to zero or the error is not forgotten (derbez2000, section 2.2)"
+    )]
+    NotStabilisable {
+        /// The characteristic polynomial of the part.
+        polynomial: String,
+    },
+    /// An inequality of the proof does not hold.
+    #[error("the inequality {inequality} does not hold: the matrix {pivot}")]
+    Inequality {
+        /// Which.
+        inequality: &'static str,
+        /// Where.
+        pivot: NotPositiveDefinite,
+    },
+    /// No bounds were found.
+    #[error("no bounds that prove a steady state were found with {bits} bits")]
+    NotFound {
+        /// The precision of the search.
+        bits: u32,
+    },
+}
+
+impl<const N: usize> SteadyState<N> {
+    /// Checks the four inequalities.
+    ///
+    /// # Errors
+    ///
+    /// [`NoSteadyState::Inequality`] with the first that does not hold.
+    pub fn check<const M: usize>(&self, problem: &Riccati<Rational, N, M>) -> Result<(), NoSteadyState> {
+        let Self { lower, upper } = self;
+        let h = &problem.measurement;
+        let innovation = kalman::innovation_covariance(h, lower, &problem.measurement_noise);
+        check("R + H L Hᵀ ≻ 0", &innovation)?;
+        check("f(L) − L ≻ 0", &(problem.next(lower) - lower))?;
+        check("U − L ≻ 0", &(upper - lower))?;
+        check("U − f(U) ≻ 0", &(upper - problem.next(upper)))
+    }
+
+    /// Finds and checks bounds whose distance is about 2 to the power −`bits`/2 of the solution's size.
+    ///
+    /// The middle comes from [`Riccati::doubled`] on enclosures, the distance from the Lyapunov equation W = A W Aᵀ + I of the closed loop
+    /// there: f(P ± εW) is about P ± ε(W − I). Whatever is found is checked.
+    ///
+    /// # Errors
+    ///
+    /// [`NoSteadyState`] with the reason.
+    pub fn certify<const M: usize>(problem: &Riccati<Rational, N, M>, bits: u32) -> Result<Self, NoSteadyState> {
+        check_problem(problem)?;
+        Self::find(problem, bits)
+            .ok_or(NoSteadyState::NotFound { bits })
+            .and_then(|found| found.check(problem).map(|()| found))
+            .map_err(|error| why_not(problem).unwrap_or(error))
+    }
+
+    fn find<const M: usize>(problem: &Riccati<Rational, N, M>, bits: u32) -> Option<Self> {
+        let middle = Enclosure::with_precision(2 * bits, || {
+            let solution = problem.map(Enclosure::rational).doubled(DOUBLINGS)?;
+            Some(solution.map(|entry| rounded(&entry.lower(), 2 * bits)))
+        })?;
+        if middle.iter().any(|entry| !entry.is_decided()) {
+            return None;
+        }
+        let a = problem.transition.clone() * (SMatrix::identity() - problem.gain(&middle) * &problem.measurement);
+        let shape = stein(&a.map(|entry| rounded(&entry, bits)), &SMatrix::identity())?;
+        let shape = shape.map(|entry| rounded(&entry, bits));
+        let size = middle
+            .iter()
+            .map(Rational::abs)
+            .fold(Rational::new(0, 1), |a, b| if a > b { a } else { b });
+        let distance = (size + Rational::new(1, 1)) * Rational::new(1, 2).pow(bits / 2);
+        let apart = mirrored(shape * distance);
+        let middle = mirrored(middle);
+        Some(Self {
+            lower: &middle - &apart,
+            upper: &middle + &apart,
+        })
+    }
+
+    /// An enclosure of an entry of the solution, at the precision of the scope.
+    ///
+    /// Source: 0 ⪯ P − L ⪯ U − L, and an entry of a semidefinite matrix is no greater than the root of the product of its diagonal entries.
+    pub fn entry(&self, i: usize, j: usize) -> Enclosure {
+        let apart = |i: usize| self.upper[(i, i)].clone() - self.lower[(i, i)].clone();
+        // The greater diagonal entry bounds the root of the product.
+        let radius = if apart(i) > apart(j) { apart(i) } else { apart(j) };
+        // A double above it; a double below the least normal one would be rounded without a bound.
+        let radius = (radius.to_f64() * (1.0 + f64::EPSILON)).max(f64::MIN_POSITIVE);
+        Enclosure::rational(&self.lower[(i, j)]) + Enclosure::around(0.0, radius)
+    }
+
+    /// The steady gain, at the precision of the scope.
+    ///
+    /// Source: derbez2000 (2), (4).
+    pub fn gain<const M: usize>(&self, problem: &Riccati<Rational, N, M>) -> SMatrix<Enclosure, N, M> {
+        let solution = SMatrix::<Enclosure, N, N>::from_fn(|i, j| self.entry(i, j));
+        problem.map(Enclosure::rational).gain(&solution)
+    }
+}
+
+/// Enough doublings for a closed loop whose spectral radius differs from one by more than a millionth: 2³⁰ steps of the recursion.
+const DOUBLINGS: usize = 30;
+
+fn check<const N: usize>(inequality: &'static str, matrix: &SMatrix<Rational, N, N>) -> Result<(), NoSteadyState> {
+    check_positive_definite(&ldl(matrix)).map_err(|pivot| NoSteadyState::Inequality { inequality, pivot })
+}
+
+/// A rational with so many bits after the point, below the given one by less than their last.
+fn rounded(value: &Rational, bits: u32) -> Rational {
+    let scale = Rational::new(2, 1).pow(bits);
+    let scaled = value.clone() * scale.clone();
+    scaled
+        .value()
+        .map_or_else(Rational::undecided, |scaled| Rational::from_big(scaled.floor()) / scale)
+}
+
+impl<const N: usize, const M: usize> Riccati<Rational, N, M> {
+    /// The same problem in another number system.
+    pub fn map<T: Field>(&self, number: impl Fn(&Rational) -> T) -> Riccati<T, N, M> {
+        Riccati {
+            transition: self.transition.map(|entry| number(&entry)),
+            measurement: self.measurement.map(|entry| number(&entry)),
+            noise: self.noise.map(|entry| number(&entry)),
+            measurement_noise: self.measurement_noise.map(|entry| number(&entry)),
+        }
+    }
+}
+
+fn check_problem<const N: usize, const M: usize>(problem: &Riccati<Rational, N, M>) -> Result<(), NoSteadyState> {
+    let invalid = |field, reason: &str| {
+        Err(NoSteadyState::Invalid {
+            field,
+            reason: reason.to_owned(),
+        })
+    };
+    if !is_symmetric(&problem.noise) || !is_positive_semidefinite(&problem.noise) {
+        return invalid("Q", "is not symmetric positive semidefinite");
+    }
+    if !is_symmetric(&problem.measurement_noise) {
+        return invalid("R", "is not symmetric");
+    }
+    check_positive_definite(&ldl(&problem.measurement_noise)).or_else(|pivot| invalid("R", &pivot.to_string()))
+}
+
+/// The first of the two conditions that does not hold, if there is one.
+fn why_not<const N: usize, const M: usize>(problem: &Riccati<Rational, N, M>) -> Option<NoSteadyState> {
+    let part = |polynomial: Vec<Rational>| {
+        let decays = is_stable_polynomial(&polynomial) == Some(true);
+        (!decays).then(|| polynomial_text(&polynomial))
+    };
+    let unmeasured = unseen_part(&rows_of(&problem.transition), &rows_of(&problem.measurement));
+    if let Some(polynomial) = part(unmeasured) {
+        return Some(NoSteadyState::NotDetectable { polynomial });
+    }
+    let transposed = rows_of(&problem.transition.transpose());
+    let unreached = unseen_part(&transposed, &rows_of(&problem.noise));
+    part(unreached).map(|polynomial| NoSteadyState::NotStabilisable { polynomial })
+}
