@@ -12,11 +12,14 @@ use immaculate::model::acceleration::{
     embedded_velocity_response, position_matrix, response_noise,
 };
 use immaculate::number::{Enclosure, Field, Rational, RationalFunction, Real};
+use immaculate::steady::certificate::{NotProven, Product, Quadratics};
 use immaculate::steady::gains;
 use immaculate::steady::linear::{solve, stein};
+use immaculate::steady::pair::{acceleration_matrix, frozen_matrix, product, remark_1_matrix, velocity_matrix};
 use immaculate::steady::polynomial::{characteristic_polynomial, has_radius_below, is_stable_polynomial, rows_of};
 use immaculate::steady::reach::{polynomial_text, unseen_part};
 use immaculate::steady::riccati::{NoSteadyState, Riccati, SteadyState};
+use immaculate::steady::verdict::{Depth, Filters, Verdict};
 use nalgebra::{Matrix1, Matrix3, SMatrix, Vector3};
 use num_traits::{One, Zero};
 
@@ -455,4 +458,224 @@ fn a_problem_without_a_steady_state_is_refused_with_its_reason() {
         .check(&held("2"))
         .is_ok()
     );
+}
+
+// One filter, and two (symbolic, exact)
+
+#[test]
+fn each_filter_by_itself_is_stable() {
+    // Symbolic, for every damping root at once: λ² + bλ + c has both roots inside the circle exactly if its values at 1 and −1 are
+    // positive and c is below one; these are the closed forms in the documentation, positive for 0 < θ < 1.
+    let root = unknown("theta");
+    let (one, rest) = (Unknown::one(), Unknown::one() - root.clone());
+    let two_squares = Unknown::integer(2) * rest.clone() * rest;
+    // λ p(λ)
+    let [o, c, b, l] = characteristic_polynomial(&rows_of(&velocity_matrix(&root)))
+        .try_into()
+        .unwrap();
+    assert_eq!((o, l), (Unknown::zero(), one.clone()));
+    assert_eq!(one.clone() + b.clone() + c.clone(), two_squares);
+    assert_eq!(one.clone() - b + c.clone(), Unknown::integer(4) * root.clone());
+    assert_eq!(c, root.clone() * root.clone());
+    // (λ − θ) p(λ) = λ³ + (b − θ)λ² + (c − θb)λ − θc
+    let [last, middle, first, l] = characteristic_polynomial(&rows_of(&acceleration_matrix(&root)))
+        .try_into()
+        .unwrap();
+    let (b, c) = (first + root.clone(), root.clone());
+    assert_eq!((last, l), (-(root.clone() * c.clone()), one.clone()));
+    assert_eq!(middle, c.clone() - root.clone() * b.clone());
+    let sum = one.clone() + root.clone();
+    assert_eq!((one.clone() + b.clone() + c.clone()) * sum.clone(), two_squares);
+    assert_eq!((one - b + c) * sum, Unknown::integer(8) * root);
+}
+
+#[test]
+fn a_product_of_two_stable_filters_is_unstable() {
+    // By hand: θ = 3/4 for constant velocity and 1/6 for constant acceleration, that is q = 1/36 and 15625/441 with R = t = 1.
+    let matrices = [velocity_matrix(&rational("3/4")), acceleration_matrix(&rational("1/6"))];
+    let indices = [
+        gains::alpha_beta_index(&rational("3/4")),
+        gains::alpha_beta_gamma_index(&rational("1/6")),
+    ];
+    assert_eq!(indices, [rational("1/6"), rational("125/21")]);
+    let expected = [
+        rationals([["9/16", "9/16", "0"], ["-1/8", "7/8", "0"], ["0", "0", "0"]]),
+        rationals([
+            ["1/36", "1/36", "1/72"],
+            ["-25/18", "-7/18", "11/36"],
+            ["-125/126", "-125/126", "127/252"],
+        ]),
+    ];
+    assert_eq!(matrices, expected);
+    for matrix in &matrices {
+        assert_eq!(has_radius_below(&rows_of(matrix), &rational("76/100")), Some(true));
+    }
+    // λ(64λ² + 71λ + 1)/64 is −6/64 · (−1) at −1, and −∞ far left: a root below −1.
+    let both = product(&[1, 0], &matrices);
+    let polynomial = characteristic_polynomial(&rows_of(&both));
+    assert_eq!(polynomial, ["0", "1/64", "71/64", "1"].map(rational));
+    let growth = Product {
+        word: vec![1, 0],
+        radius: rational("109/100"),
+    };
+    growth.check(&matrices).unwrap();
+    // The radius is −1.0951…: a bound above it is refused.
+    let too_much = Product {
+        radius: rational("110/100"),
+        ..growth.clone()
+    };
+    assert_eq!(too_much.check(&matrices), Err(NotProven::Below { decided: true }));
+    let nothing = Product {
+        radius: Rational::one(),
+        ..growth
+    };
+    assert!(matches!(nothing.check(&matrices), Err(NotProven::Radius { .. })));
+    let other = Product {
+        word: vec![0],
+        radius: rational("109/100"),
+    };
+    assert_eq!(other.check(&matrices), Err(NotProven::Below { decided: true }));
+}
+
+#[test]
+fn a_convex_combination_of_stable_matrices_is_unstable() {
+    // The paper's sentence taken literally. Each has the one eigenvalue 1/2, their mean 11/2.
+    let a = rationals([["1/2", "10"], ["0", "1/2"]]);
+    let half = rational("1/2");
+    let mean = remark_1_matrix(&[half.clone(), half], &[a.clone(), a.transpose()]);
+    assert_eq!(has_radius_below(&rows_of(&a), &rational("51/100")), Some(true));
+    assert_eq!(has_radius_below(&rows_of(&mean), &rational("11/2")), Some(false));
+}
+
+/// Mixing probabilities of two modes, from the weight of the first in each.
+fn mixing(first: [&str; 2]) -> Vec<Vec<Rational>> {
+    first
+        .map(|weight| vec![rational(weight), Rational::one() - rational(weight)])
+        .to_vec()
+}
+
+/// Whether the criterion of remark 1 and the frozen criterion call two filters stable.
+fn criteria<const N: usize>(mixing: &[Vec<Rational>], matrices: &[SMatrix<Rational, N, N>; 2]) -> (bool, bool) {
+    let is_stable = |rows| has_radius_below(&rows, &Rational::one()) == Some(true);
+    for matrix in matrices {
+        assert!(is_stable(rows_of(matrix)), "each by itself");
+    }
+    let remark_1 = mixing
+        .iter()
+        .all(|row| is_stable(rows_of(&remark_1_matrix(row, matrices))));
+    (remark_1, is_stable(frozen_matrix(mixing, matrices)))
+}
+
+#[test]
+fn remark_1_calls_stable_what_is_not() {
+    let nilpotent = [rationals([["0", "0"], ["1", "0"]]), rationals([["0", "2"], ["0", "0"]])];
+    assert_eq!(criteria(&mixing(["1/4", "3/4"]), &nilpotent), (true, false));
+    // With the paper's chain, p = 0.95/0.05 and equal probabilities, three states are enough.
+    let three = [
+        rationals([["1/2", "0", "0"], ["-5", "-1/2", "-7/2"], ["-7", "0", "1/2"]]),
+        rationals([["1/2", "1/2", "1"], ["0", "1/2", "0"], ["1/2", "2", "-1/2"]]),
+    ];
+    assert_eq!(criteria(&mixing(["19/20", "1/20"]), &three), (true, false));
+    // And two filters of this paper under a chain that changes its mode nineteen times in twenty.
+    let filters = [
+        velocity_matrix(&rational("9/10")),
+        acceleration_matrix(&rational("1/10")),
+    ];
+    assert_eq!(criteria(&mixing(["1/20", "19/20"]), &filters), (true, false));
+}
+
+#[test]
+fn remark_1_calls_unstable_what_is_stable() {
+    let nilpotent = |c| [rationals([["0", "0"], ["1", "0"]]), rationals([["0", c], ["0", "0"]])];
+    assert_eq!(criteria(&mixing(["3/4", "1/4"]), &nilpotent("8")), (false, true));
+    // With the paper's chain and equal probabilities.
+    assert_eq!(criteria(&mixing(["19/20", "1/20"]), &nilpotent("25")), (false, true));
+}
+
+#[test]
+fn the_frozen_matrix_carries_the_errors_of_the_filter() {
+    let filters = [velocity_matrix(&rational("1/3")), acceleration_matrix(&rational("1/2"))];
+    let mixing = mixing(["5/7", "1/9"]);
+    let errors = [rationals([["1"], ["-2"], ["3"]]), rationals([["4"], ["0"], ["-1/2"]])];
+    let joint = frozen_matrix(&mixing, &filters);
+    for j in 0..2 {
+        let mixed = &errors[0] * mixing[j][0].clone() + &errors[1] * mixing[j][1].clone();
+        let after = &filters[j] * mixed;
+        for row in 0..3 {
+            let by_row = (0..6).fold(Rational::zero(), |sum, k| {
+                sum + joint[3 * j + row][k].clone() * errors[k / 3][k % 3].clone()
+            });
+            assert_eq!(by_row, after[row]);
+        }
+    }
+}
+
+// Certificates (exact, enclosed)
+
+#[test]
+fn a_common_form_proves_stability_and_a_spoilt_one_does_not() {
+    let filters = Filters::Roots([rational("1/3"), rational("1/2")]);
+    let form = rationals([["12", "-2", "-2"], ["-2", "7", "-6"], ["-2", "-6", "20"]]);
+    let proof = Quadratics {
+        edges: Quadratics::<3>::memory(2, 0),
+        forms: vec![form.clone()],
+    };
+    filters.check_stable(&proof).unwrap();
+    let spoilt = |change: &dyn Fn(&mut Quadratics<3>)| {
+        let mut proof = proof.clone();
+        change(&mut proof);
+        filters.check_stable(&proof).unwrap_err()
+    };
+    assert!(matches!(
+        spoilt(&|p| p.forms[0][(0, 1)] = rational("2")),
+        NotProven::Form { .. }
+    ));
+    let indefinite = spoilt(&|p| p.forms[0][(2, 2)] = rational("1"));
+    assert!(matches!(indefinite, NotProven::Form { .. }), "{indefinite}");
+    let growing = spoilt(&|p| p.forms[0][(2, 2)] = rational("200"));
+    assert!(matches!(growing, NotProven::Decrease { edge: 0 | 1, .. }), "{growing}");
+    assert_eq!(
+        spoilt(&|p| {
+            p.edges.pop();
+        }),
+        NotProven::Incomplete { node: 0, letter: 1 }
+    );
+    assert_eq!(spoilt(&|p| p.edges[1].to = 1), NotProven::Edge { edge: 1 });
+    assert_eq!(spoilt(&|p| p.forms.clear()), NotProven::Edge { edge: 0 });
+    assert!(
+        spoilt(&|p| {
+            p.forms.clear();
+            p.edges.clear();
+        })
+        .to_string()
+        .contains("not complete")
+    );
+    // It proves nothing about other filters.
+    let others = Filters::Roots([rational("3/4"), rational("1/6")]);
+    assert!(others.check_stable(&proof).is_err());
+}
+
+#[test]
+fn whatever_is_decided_is_proven() {
+    // A common form, forms with memory, a short product and a long one.
+    let cases = [
+        ("1/3", "1/2", 1, 0),
+        ("4/5", "2/5", 2, 0),
+        ("3/4", "1/6", 0, 3),
+        ("967/1000", "3/4", 0, 20),
+    ];
+    for (v, a, forms, letters) in cases {
+        let filters = Filters::Roots([rational(v), rational(a)]);
+        match filters.decide(Depth::default()) {
+            Verdict::Stable(found) => {
+                filters.check_stable(&found).unwrap();
+                assert_eq!(found.forms.len(), forms, "{v} {a}");
+            }
+            Verdict::Unstable(found) => {
+                filters.check_unstable(&found).unwrap();
+                assert_eq!(found.word.len(), letters, "{v} {a}");
+            }
+            Verdict::Undecided { growth } => panic!("{v} {a}: {growth}"),
+        }
+    }
 }

@@ -6,10 +6,18 @@
 //! - [`gains`]: the closed forms of the α-β and α-β-γ filters;
 //! - [`riccati`]: the Riccati equation, by recursion and by doubling, and the proof of its solution;
 //! - [`reach`]: when there is none, and why;
-//! - [`polynomial`], [`linear`]: stability of one matrix, and linear systems, without an eigenvalue.
+//! - [`polynomial`], [`linear`]: stability of one matrix, and linear systems, without an eigenvalue;
+//! - [`pair`]: the two filters of derbez2000 and three criteria of their joint stability;
+//! - [`certificate`]: what proves joint stability, or its absence;
+//! - [`search`]: how such proofs are found;
+//! - [`verdict`]: the answer for two filters.
 
+pub mod certificate;
 pub mod gains;
 pub mod linear;
+pub mod pair;
 pub mod polynomial;
 pub mod reach;
 pub mod riccati;
+pub mod search;
+pub mod verdict;

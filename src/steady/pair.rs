@@ -1,0 +1,123 @@
+//! The two fixed-gain filters of derbez2000 and what becomes of their errors when they exchange estimates.
+//!
+//! After this file the reader knows three criteria of stability and which question each of them answers.
+//!
+//! Between two measurements filter j starts from the mixed estimate, so its error without noise is eⱼ ↦ Aⱼ Σᵢ μᵢ∣ⱼ eᵢ, Aⱼ = (I − Kⱼ H) Fⱼ:
+//!
+//! | the mixing probabilities μᵢ∣ⱼ are | the errors stay bounded exactly if                                | here                    |
+//! |-----------------------------------|-------------------------------------------------------------------|-------------------------|
+//! | none: filters do not mix          | each Aⱼ has a spectral radius below one, which the Riccati equation grants | [`super::riccati`] |
+//! | constant                          | diag(Aⱼ) (U ⊗ I) has, U\[j\]\[i\] = μᵢ∣ⱼ                          | [`frozen_matrix`]       |
+//! | any, at every step                | the joint spectral radius of {Aⱼ} is below one                     | [`super::certificate`]  |
+//!
+//! Why the last line holds. *Enough*: with a joint spectral radius below one there is a norm in which every ‖Aⱼ‖ ≤ λ < 1 (Rota and
+//! Strang 1960), and ‖Aⱼ Σᵢ μᵢ∣ⱼ eᵢ‖ ≤ λ maxᵢ ‖eᵢ‖, since the μᵢ∣ⱼ sum to one. Whatever the data do, bounded noise makes a bounded error.
+//! *Necessary*: with μ near (1, 0) both filters start from the first, with μ near (0, 1) from the second; so each product
+//! Aⱼₙ ⋯ Aⱼ₁ is approached, and one with a spectral radius above one carries errors away.
+//!
+//! A joint spectral radius below one bounds the error; it does not make two filters that see the same data agree in the end, since their
+//! mode probabilities depend on their own estimates.
+//!
+//! The matrices are in coordinates scaled by D = diag(1, t, t²), in which every scan time is one; a change of coordinates alters no
+//! spectral radius.
+
+use super::gains;
+use super::polynomial::Rows;
+use super::riccati::Riccati;
+use crate::model::acceleration::{constant_acceleration, embedded_constant_velocity, position_matrix};
+use crate::number::Field;
+use nalgebra::{Matrix1, Matrix3, SMatrix, Vector3};
+
+/// (I − K H) F of the constant velocity filter with a damping root, in scaled coordinates — derbez2000 (7).
+///
+/// Why it is stable for every θ in (0, 1): its characteristic polynomial is λ p(λ) with p(1) = 2(1 − θ)² > 0, p(−1) = 4θ > 0 and
+/// p(0) = θ² < 1, which puts both roots of p inside the unit circle.
+///
+/// Source: derbez2000, section 2.2.
+///
+/// Evidence: `each_filter_by_itself_is_stable` (symbolic).
+pub fn velocity_matrix<T: Field>(root: &T) -> Matrix3<T> {
+    let motion = embedded_constant_velocity(&T::one());
+    closed_loop(motion, &gains::alpha_beta_gain(root, &T::one()))
+}
+
+/// (I − K H) F of the constant acceleration filter with a damping root, in scaled coordinates.
+///
+/// Why it is stable for every θ in (0, 1): its characteristic polynomial is (λ − θ) p(λ) with p(1) = 2(1 − θ)²/(1 + θ) > 0,
+/// p(−1) = 8θ/(1 + θ) > 0 and p(0) = θ < 1.
+///
+/// Source: derbez2000, section 2.2, as [`velocity_matrix`].
+///
+/// Evidence: `each_filter_by_itself_is_stable` (symbolic).
+pub fn acceleration_matrix<T: Field>(root: &T) -> Matrix3<T> {
+    let motion = constant_acceleration(&T::one());
+    closed_loop(motion, &gains::alpha_beta_gamma_gain(root, &T::one()))
+}
+
+fn closed_loop<T: Field>(motion: Matrix3<T>, gain: &Vector3<T>) -> Matrix3<T> {
+    let filter = Riccati {
+        transition: motion,
+        measurement: position_matrix(),
+        noise: Matrix3::zeros(),
+        measurement_noise: Matrix1::new(T::one()),
+    };
+    filter.closed_loop(gain)
+}
+
+/// The matrix of remark 1, Mⱼ = Σᵢ μᵢ∣ⱼ Aᵢ: what the paper's criterion looks at.
+///
+/// | paper | here       | shape | meaning                                               |
+/// |-------|------------|-------|-------------------------------------------------------|
+/// | μⁱʲ₊  | `mixing`   | R     | μᵢ∣ⱼ over i, for one j                                |
+/// | (I − Kʲ₊H)Fʲ | `matrices` | R × N × N | Aᵢ                                          |
+///
+/// Errata: it is said to control the stability of the whole and does not, in either direction, even for constant probabilities: the
+/// filters' errors differ, so that no single N × N matrix carries them. [`frozen_matrix`] does.
+///
+/// Source: derbez2000, section 2.2, remark 1, not numbered.
+///
+/// Evidence: `remark_1_calls_stable_what_is_not`, `remark_1_calls_unstable_what_is_stable` (exact).
+pub fn remark_1_matrix<T: Field, const N: usize>(mixing: &[T], matrices: &[SMatrix<T, N, N>]) -> SMatrix<T, N, N> {
+    let mut sum = SMatrix::zeros();
+    for (probability, matrix) in mixing.iter().zip(matrices) {
+        sum += matrix * probability.clone();
+    }
+    sum
+}
+
+/// The matrix that carries the errors of all filters when the mixing probabilities are constant: diag(Aⱼ) (U ⊗ I).
+///
+/// ```text
+/// block (j, i) = μᵢ∣ⱼ Aⱼ
+/// ```
+///
+/// | here       | shape     | meaning                                    |
+/// |------------|-----------|--------------------------------------------|
+/// | `mixing`   | R × R     | `[j][i]` = μᵢ∣ⱼ, rows sum to one             |
+/// | `matrices` | R × N × N | Aⱼ                                         |
+/// | the result | RN × RN   | as a list of rows                          |
+///
+/// Source: the mixed estimate of (1) and the update of section 3, without noise.
+///
+/// Evidence: `the_frozen_matrix_carries_the_errors_of_the_filter` (exact).
+pub fn frozen_matrix<T: Field, const N: usize>(mixing: &[Vec<T>], matrices: &[SMatrix<T, N, N>]) -> Rows<T> {
+    let row = |index: usize| {
+        let (j, row) = (index / N, index % N);
+        let entry = |column: usize| mixing[j][column / N].clone() * matrices[j][(row, column % N)].clone();
+        (0..matrices.len() * N).map(entry).collect()
+    };
+    (0..matrices.len() * N).map(row).collect()
+}
+
+/// The product of matrices that a word names, the first letter acting first: A_{σₙ} ⋯ A_{σ₁}.
+///
+/// Source: derbez2000 (8), with its factors in the order in which they act.
+///
+/// Evidence: `a_product_of_two_stable_filters_is_unstable` (exact).
+pub fn product<T: Field, const N: usize>(word: &[usize], matrices: &[SMatrix<T, N, N>]) -> SMatrix<T, N, N> {
+    let mut product = SMatrix::identity();
+    for &letter in word {
+        product = &matrices[letter] * product;
+    }
+    product
+}
