@@ -5,6 +5,7 @@
 pub mod answer;
 pub mod cases;
 pub mod check;
+pub mod stability;
 pub mod trace;
 pub mod variants;
 

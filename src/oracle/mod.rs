@@ -12,12 +12,13 @@
 //! - [`problem`], [`trace`], [`csv`], [`schema`], [`invalid`]: the file formats;
 //! - [`shape`], [`setup`], [`run`]: from a file to a run in any number system, by itself or along another program's values;
 //! - [`certify`], [`noise`], [`scale`]: the exact values, how far rounding moves them, and in which unit an error is large;
-//! - [`case`]: the published cases;
+//! - [`case`]: the published cases; [`certificate`]: certificates of joint stability as files;
 //! - [`subject`], [`process`], [`folder`]: the program under test; [`answer`]: the other side of the protocol;
 //! - [`judge`]: one case; [`variant`]: the catalogue of what can be done otherwise; [`diagnose`]: what was done; [`check`]: all cases.
 
 pub mod answer;
 pub mod case;
+pub mod certificate;
 pub mod certify;
 pub mod check;
 pub mod csv;

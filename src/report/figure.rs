@@ -177,6 +177,6 @@ fn draw_panel(area: &Area, panel: &Panel, reproduction: &Reproduction) -> Result
     Ok(())
 }
 
-fn not_drawn(error: impl std::fmt::Display) -> NotDrawn {
+pub(super) fn not_drawn(error: impl std::fmt::Display) -> NotDrawn {
     NotDrawn(error.to_string())
 }

@@ -10,6 +10,8 @@ pub mod claims;
 pub mod figure;
 pub mod reproduction;
 pub mod rule;
+pub mod stability;
+pub mod stability_map;
 pub mod trace;
 pub mod variants;
 

@@ -10,11 +10,13 @@
 //! - [`pair`]: the two filters of derbez2000 and three criteria of their joint stability;
 //! - [`certificate`]: what proves joint stability, or its absence;
 //! - [`search`]: how such proofs are found;
-//! - [`verdict`]: the answer for two filters.
+//! - [`verdict`]: the answer for two filters;
+//! - [`map`]: the answers over a range of noises.
 
 pub mod certificate;
 pub mod gains;
 pub mod linear;
+pub mod map;
 pub mod pair;
 pub mod polynomial;
 pub mod reach;

@@ -68,9 +68,9 @@ pub fn fastest_runs<const N: usize>(matrices: &[SMatrix<f64, N, N>; 2], longest:
             .collect::<Vec<_>>()
     });
     let mut best = (Vec::new(), 0.0);
-    for (i, first) in (1..).zip(&powers[0]) {
-        for (j, second) in (1..).zip(&powers[1]) {
-            let growth = Real::exp(&(Real::ln(&spectral_radius(&(second * first))) / f64::from(i + j)));
+    for (i, first) in (1..=longest).zip(&powers[0]) {
+        for (j, second) in (1..=longest).zip(&powers[1]) {
+            let growth = Real::exp(&(Real::ln(&spectral_radius(&(second * first))) / (i + j) as f64));
             if growth > best.1 {
                 best = (vec![(0, i), (1, j)], growth);
             }
@@ -78,8 +78,7 @@ pub fn fastest_runs<const N: usize>(matrices: &[SMatrix<f64, N, N>; 2], longest:
     }
     let runs = best.0.iter();
     (
-        runs.flat_map(|(letter, length)| vec![*letter; *length as usize])
-            .collect(),
+        runs.flat_map(|(letter, length)| vec![*letter; *length]).collect(),
         best.1,
     )
 }
@@ -130,8 +129,8 @@ fn forms(matrices: &[Matrix], edges: &[Edge]) -> Option<Vec<Matrix>> {
     Some(forms.map(|form| (form + form.transpose()) / 2.0).collect())
 }
 
-/// Coordinates in which each matrix by itself shrinks vectors, as far as one change of coordinates can have it: the root of the sum of their
-/// Lyapunov matrices.
+/// Coordinates in which each matrix by itself shrinks vectors, as far as one change of coordinates can have it: the root of the sum of
+/// their Lyapunov matrices.
 fn coordinates(matrices: &[Matrix]) -> Option<Matrix> {
     let mut sum = Matrix::zeros();
     for matrix in matrices {
