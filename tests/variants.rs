@@ -446,6 +446,7 @@ fn generic<const N: usize, const M: usize>(modes: usize, measurement: Measuremen
         measurement,
         measurement_noise: covariance(500, 3.0),
         rule: None,
+        fixed_gains: None,
     };
     let initial = Initial {
         modes: (0..modes).map(estimate).collect(),
@@ -517,6 +518,7 @@ fn on_enclosures<const N: usize, const M: usize>(setup: &Setup<f64, N, M>) -> Se
             measurement,
             measurement_noise: problem.measurement_noise.map(Enclosure::exact),
             rule,
+            fixed_gains: None,
         },
         equations: if has_points {
             Equations::cubature()

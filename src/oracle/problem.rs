@@ -397,7 +397,8 @@ fn of_problem(error: &InvalidProblem) -> Invalid {
         InvalidProblem::NegativeProbability { .. } | InvalidProblem::NotNormalised { .. } => Class::NotAProbability,
         InvalidProblem::NotSymmetric { .. } => Class::NotSymmetric,
         InvalidProblem::NotPositive { .. } => Class::NotPositiveDefinite,
-        InvalidProblem::NotLinear | InvalidProblem::Rule { .. } => Class::Unknown,
+        InvalidProblem::NotLinear | InvalidProblem::Rule { .. } | InvalidProblem::FixedGains { .. } => Class::Unknown,
+        InvalidProblem::CovarianceGiven { .. } => Class::Format,
     };
     // The sentence starts with the field in backquotes.
     let sentence = error.to_string();

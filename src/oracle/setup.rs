@@ -110,6 +110,7 @@ impl ProblemFile {
             measurement: self.measurement(number)?,
             measurement_noise: matrix(&self.noise, number),
             rule,
+            fixed_gains: None,
         };
         Ok(Setup {
             equations: Equations::standard(&problem),
