@@ -636,7 +636,7 @@ fn a_shape_that_is_not_built_is_refused_with_those_that_are() {
     }
     for estimate in &mut problem.initial.modes {
         estimate.mean = vec![0.0; 7];
-        estimate.covariance.clone_from(&identity);
+        estimate.covariance = Some(identity.clone());
     }
     let invalid = problem.check().unwrap_err();
     assert_eq!((invalid.class, invalid.place.as_str()), (Class::Shape, "problem.state"));
@@ -730,7 +730,7 @@ fn reading_and_writing_a_trace_is_the_identity() {
         assert!(Value::Array(trace.steps_as_json()) == steps, "{id}: JSON");
         for text in [
             csv::write(id, trace, "", |_, _| String::new()),
-            long_csv(id, trace, case.trace_text),
+            long_csv(&case.problem, trace, case.trace_text),
         ] {
             assert!(
                 csv::read(&text, id, trace.dimensions).as_ref() == Ok(trace),

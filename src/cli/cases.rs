@@ -161,7 +161,7 @@ fn copy(folder: &Path, select: &Select) -> Result<Done, Refusal> {
         if let Expected::Trace(trace) = &case.expected {
             write_file(
                 &folder.join(format!("{id}.trace.csv")),
-                &long_csv(id, trace, case.trace_text),
+                &long_csv(&case.problem, trace, case.trace_text),
             )?;
             files += 1;
         }

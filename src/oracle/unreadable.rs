@@ -4,7 +4,7 @@
 //! that have a `kind` must know the kind before it can read the rest, and forgets the places on the way; here they are found again.
 
 use super::invalid::{Class, Invalid};
-use super::problem::Rows;
+use super::problem::{FixedGainFile, Rows};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
@@ -42,6 +42,10 @@ const OBJECTS: [(&str, &[Kind]); 2] = [
                     ("beta", attempt::<f64>),
                     ("kappa", attempt::<f64>),
                 ],
+            ),
+            (
+                "fixed-gain",
+                &[("mixing", attempt::<String>), ("modes", attempt::<Vec<FixedGainFile>>)],
             ),
         ],
     ),

@@ -296,7 +296,7 @@ fn coverage(report: &Report) -> String {
         ),
         (
             Finding::Stale,
-            "are shown in steps without a detection, where there are none, and were passed over",
+            "are shown where there are none, without a detection or as covariances of fixed gains, and were passed over",
         ),
     ] {
         let values = report

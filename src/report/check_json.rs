@@ -80,7 +80,7 @@ fn finding(finding: Finding) -> &'static str {
         Finding::Propagated => "propagated",
         Finding::CannotTell => "cannot tell",
         Finding::Undetermined => "undetermined",
-        Finding::Stale => "shown without a detection",
+        Finding::Stale => "shown where there is none",
         Finding::NotFinite => "not finite",
         Finding::Fault => "fault",
     }

@@ -85,7 +85,10 @@ fn covariances() -> Vec<Rejected> {
             "rejected.symmetric.initial",
             Class::NotSymmetric,
             "an initial covariance has one entry that its mirror image has not",
-            |problem| problem.initial.modes[1].covariance[0][2] += 0.5,
+            |problem| {
+                let covariance = &mut problem.initial.modes[1].covariance;
+                covariance.iter_mut().for_each(|rows| rows[0][2] += 0.5);
+            },
         ),
         linear(
             "rejected.symmetric.noise",
@@ -97,7 +100,10 @@ fn covariances() -> Vec<Rejected> {
             "rejected.definite.initial",
             Class::NotPositiveDefinite,
             "an initial covariance has a variance that is too small for its correlations",
-            |problem| problem.initial.modes[0].covariance[1][1] = 0.25,
+            |problem| {
+                let covariance = &mut problem.initial.modes[0].covariance;
+                covariance.iter_mut().for_each(|rows| rows[1][1] = 0.25);
+            },
         ),
         linear(
             "rejected.definite.process-noise",
