@@ -52,11 +52,13 @@ pub(super) fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &m
                 }
                 (Equations::standard(problem).predicted_mode_probability)(problem, previous, now, j)
             };
-            equations.mixing_probability = |problem, previous, now, j, i| match (now.step, i == j) {
-                (1, true) => T::one(),
-                (1, false) => T::zero(),
-                _ => (Equations::standard(problem).mixing_probability)(problem, previous, now, j, i),
-            };
+            if equations.mixes {
+                equations.mixing_probability = |problem, previous, now, j, i| match (now.step, i == j) {
+                    (1, true) => T::one(),
+                    (1, false) => T::zero(),
+                    _ => (Equations::standard(problem).mixing_probability)(problem, previous, now, j, i),
+                };
+            }
         }
         // ln L + (m/2) ln 2π
         "log-likelihood-without-two-pi" => {
