@@ -244,7 +244,7 @@ fn two_wrongs_can_make_a_right() {
 #[test]
 fn every_variant_can_be_evaluated_on_enclosures() {
     for variant in catalogue() {
-        for mut setup in [linear(3), polar("cubature-3"), fixed(Equations::fixed_gain())] {
+        for mut setup in [linear(3), polar("cubature-3"), fixed(&Equations::fixed_gain())] {
             // Two steps, and a detection in the first only: along the way doubles lose the digits of filters that are very wrong.
             setup.measurements.truncate(2);
             setup.measurements[1] = None;
@@ -372,8 +372,8 @@ fn scenes() -> Vec<Scene> {
         Scene::Large(OUTLIERS[0], outlier),
         Scene::Large(OUTLIERS[1], faint),
         Scene::Large("linear with points", points),
-        Scene::Large("fixed gains", fixed(Equations::fixed_gain())),
-        Scene::Large("fixed gains, unmixed", fixed(Equations::fixed_gain_unmixed())),
+        Scene::Large("fixed gains", fixed(&Equations::fixed_gain())),
+        Scene::Large("fixed gains, unmixed", fixed(&Equations::fixed_gain_unmixed())),
         Scene::Large("embedded", embedded()),
         Scene::Large("fifth degree", polar(RULE)),
         Scene::Large("simplex", polar("simplex-5")),
@@ -397,7 +397,7 @@ fn linear(modes: usize) -> Setup<f64, 4, 2> {
 }
 
 /// Filters with fixed gains: those of the initial covariances, so that the filter follows what it measures.
-fn fixed(equations: Equations<f64, 4, 2>) -> Setup<f64, 4, 2> {
+fn fixed(equations: &Equations<f64, 4, 2>) -> Setup<f64, 4, 2> {
     let mut setup = linear(3);
     let h = setup.problem.measurement.matrix();
     let of_mode = |estimate: &Gaussian<f64, 4>| {
@@ -409,7 +409,7 @@ fn fixed(equations: Equations<f64, 4, 2>) -> Setup<f64, 4, 2> {
         }
     };
     setup.problem.fixed_gains = Some(setup.initial.modes.iter().map(of_mode).collect());
-    setup.equations = equations;
+    setup.equations = *equations;
     for estimate in &mut setup.initial.modes {
         estimate.covariance.fill(0.0);
     }

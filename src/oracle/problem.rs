@@ -6,7 +6,7 @@
 use super::invalid::{Class, Invalid};
 use super::trace::Dimensions;
 use super::{shape, unreadable};
-use crate::imm::InvalidProblem;
+use crate::imm::{InvalidProblem, Quantity};
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
@@ -151,6 +151,16 @@ impl FilterFile {
             Self::Unscented { .. } => "unscented",
             Self::FixedGain { mixing, .. } if mixing == UNMIXED => "fixed-gain-unmixed",
             Self::FixedGain { .. } => "fixed-gain",
+        }
+    }
+
+    /// The printed equations that give a quantity: with fixed gains the gain and the innovation covariance are not computed but given.
+    pub fn equation(&self, quantity: Quantity) -> &'static str {
+        match (self, quantity) {
+            (Self::FixedGain { .. }, Quantity::InnovationCovariance) => "derbez2000 (4), given",
+            (Self::FixedGain { .. }, Quantity::Gain) => "derbez2000, section 3, given",
+            (Self::FixedGain { .. }, Quantity::UpdatedMean) => "derbez2000, section 3",
+            _ => quantity.equation(),
         }
     }
 

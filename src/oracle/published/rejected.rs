@@ -102,8 +102,9 @@ fn covariances() -> Vec<Rejected> {
             Class::NotSymmetric,
             "an initial covariance has one entry that its mirror image has not",
             |problem| {
-                let covariance = &mut problem.initial.modes[1].covariance;
-                covariance.iter_mut().for_each(|rows| rows[0][2] += 0.5);
+                if let Some(covariance) = &mut problem.initial.modes[1].covariance {
+                    covariance[0][2] += 0.5;
+                }
             },
         ),
         linear(
@@ -117,8 +118,9 @@ fn covariances() -> Vec<Rejected> {
             Class::NotPositiveDefinite,
             "an initial covariance has a variance that is too small for its correlations",
             |problem| {
-                let covariance = &mut problem.initial.modes[0].covariance;
-                covariance.iter_mut().for_each(|rows| rows[1][1] = 0.25);
+                if let Some(covariance) = &mut problem.initial.modes[0].covariance {
+                    covariance[1][1] = 0.25;
+                }
             },
         ),
         linear(
@@ -205,7 +207,7 @@ fn fixed_gains() -> Vec<Rejected> {
             "rejected.format.covariance",
             Class::Format,
             "an estimate has a covariance, which filters with fixed gains do not have",
-            |problem| problem.initial.modes[0].covariance = plane().0.initial.modes[0].covariance.clone(),
+            |problem| problem.initial.modes[0] = plane().0.initial.modes[0].clone(),
         ),
     ]
 }

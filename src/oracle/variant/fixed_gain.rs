@@ -19,7 +19,9 @@ fn of_given<T: Real, const N: usize, const M: usize>(id: &str, given: &mut [Fixe
         "gain-of-the-next-mode" => rotate(given, |mode| &mut mode.gain),
         "gain-of-the-first-mode" => {
             if let Some((first, others)) = given.split_first_mut() {
-                others.iter_mut().for_each(|mode| mode.gain.clone_from(&first.gain));
+                for mode in others {
+                    mode.gain.clone_from(&first.gain);
+                }
             }
         }
         // Sʲ⁺¹
