@@ -4,6 +4,7 @@
 //! choice that it leaves open. The folders follow their papers; this level holds what they share.
 //!
 //! - [`specification`]: the papers' equations, tables, open parameters and claims, from the files in `spec/`;
+//! - [`simulation`]: what can be run, and what the statistics ask about it;
 //! - [`scenario`]: a target that flies straight and turns, seen by a sensor, and the filters that compete on it;
 //! - [`monte_carlo`]: runs, on all cores, the same for any number of them;
 //! - [`result`]: what the runs show;
@@ -15,6 +16,7 @@ pub mod liu2017;
 pub mod monte_carlo;
 pub mod result;
 pub mod scenario;
+pub mod simulation;
 pub mod specification;
 pub mod verdict;
 pub mod zhu2016;
