@@ -22,7 +22,12 @@ pub struct Experiment<S = Scenario> {
 impl<S: Simulation> Experiment<S> {
     /// Runs a scenario.
     pub fn new(scenario: S, effort: Effort, progress: Progress) -> Self {
-        let runs = run(&scenario, effort.runs.unwrap_or_else(|| scenario.runs()), effort.seed, progress);
+        let runs = run(
+            &scenario,
+            effort.runs.unwrap_or_else(|| scenario.runs()),
+            effort.seed,
+            progress,
+        );
         Self { scenario, runs }
     }
 

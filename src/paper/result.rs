@@ -424,6 +424,11 @@ impl Reproduction {
         }
     }
 
+    /// Whether a mode models what the target does in a step, counted from 0.
+    pub fn is_true(&self, mode: &str, step: usize) -> bool {
+        self.motions[step].split(", ").any(|motion| motion == mode)
+    }
+
     /// The overall error of a filter in a quantity.
     pub fn error(&self, filter: &str, quantity: Quantity) -> Option<Estimate> {
         let filter = self.filters.iter().find(|performance| performance.name == filter)?;
@@ -436,11 +441,17 @@ impl Reproduction {
 fn first_run(path: &Path, results: &[Vec<Run>]) -> FirstRun {
     let of_filter = |run: &Run| {
         let steps = path.truth.iter().zip(&run.errors);
-        steps.map(|(truth, error)| [truth[0] + error[0], truth[1] + error[2]]).collect()
+        steps
+            .map(|(truth, error)| [truth[0] + error[0], truth[1] + error[2]])
+            .collect()
     };
     FirstRun {
         truth: path.truth.iter().map(|position| [position[0], position[1]]).collect(),
-        measured: path.measured.iter().map(|position| [position[0], position[1]]).collect(),
+        measured: path
+            .measured
+            .iter()
+            .map(|position| [position[0], position[1]])
+            .collect(),
         estimates: results.first().into_iter().flatten().map(of_filter).collect(),
     }
 }
