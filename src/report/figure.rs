@@ -1,7 +1,8 @@
 //! The papers' figures: errors and mode probabilities over time, as SVG.
 //!
-//! After this file the reader can look at what the tables average: when the target turns (shaded), how the errors rise, and how fast the
-//! mode probabilities follow; where a paper shows a run, its path. Filters that coincide are still seen: each line is drawn thinner over the one before.
+//! After this file the reader can look at what the tables average: when the target turns (shaded), how the errors rise, how fast the mode
+//! probabilities follow, and, where a paper shows a run, its path. Filters that coincide are still seen: each line is drawn thinner over
+//! the one before.
 
 use crate::paper::result::{FirstRun, Performance, Quantity, Reproduction};
 use plotters::coord::Shift;

@@ -24,6 +24,8 @@ pub(super) fn not_yet_judged(s: &Specification, id: &str) -> Judgement {
 /// ```text
 /// e' = A₊ e + b₊,   A₊ = (I − K₊H)F,   b₊ = (I − K₊H) ΔF x,   m = a [t²(1 − α)/β, t(2α − β)/(2β), 1]ᵀ
 /// ```
+///
+/// Evidence: `without_noise_in_the_gain_calculation_the_mismatched_error_is_not_bounded`.
 pub(super) fn constant_bounded_error(s: &Specification) -> Judgement {
     let [root, interval, acceleration] = ["root", "t", "a"].map(RationalFunction::unknown);
     let mean = settled_error(&root, &interval, &acceleration);

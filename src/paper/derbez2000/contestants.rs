@@ -24,7 +24,10 @@ use crate::model::motion::Mode;
 use crate::steady::gains;
 use nalgebra::{Matrix1, Vector2, Vector3};
 
-/// From what the fixed-gain filters start.
+/// From what the fixed-gain filters start. Un-mixed filters stand alone, and each is stable as its gain is; mixed ones feed each other, and
+/// are not judged one by one.
+///
+/// Evidence: `frozen_probabilities_are_not_judged_by_the_averaged_matrices` (exact).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reading {
     /// From mixed estimates, as in the usual IMM algorithm.
@@ -49,7 +52,10 @@ pub enum Noise {
 pub struct Setup {
     /// t, s.
     pub interval: f64,
-    /// From what the fixed-gain filters start.
+    /// From what the fixed-gain filters start. Un-mixed filters stand alone, and each is stable as its gain is; mixed ones feed each other, and
+    /// are not judged one by one.
+    ///
+    /// Evidence: `frozen_probabilities_are_not_judged_by_the_averaged_matrices` (exact).
     pub reading: Reading,
     /// q of both modes, (m/s²)².
     pub noise_variance: f64,
