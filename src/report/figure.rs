@@ -63,7 +63,7 @@ pub fn errors(reproduction: &Reproduction) -> Result<String, NotDrawn> {
         Panel {
             title: format!(
                 "{}: RMSE over {} runs; {} shaded",
-                reproduction.paper,
+                title(reproduction),
                 reproduction.runs,
                 what_is_shaded(reproduction)
             ),
@@ -74,6 +74,14 @@ pub fn errors(reproduction: &Reproduction) -> Result<String, NotDrawn> {
         }
     };
     draw(reproduction, &[panel(Quantity::Position), panel(Quantity::Velocity)])
+}
+
+/// The paper, and the scenario where another than its first is shown.
+fn title(reproduction: &Reproduction) -> String {
+    match reproduction.choices.chosen("scenario") {
+        Some(scenario) => format!("{}, {scenario}", reproduction.paper),
+        None => reproduction.paper.to_owned(),
+    }
 }
 
 /// What the shade of the figures of errors means.
@@ -104,7 +112,10 @@ pub fn mode_probabilities(reproduction: &Reproduction) -> Result<String, NotDraw
             Some(filter.mode_probabilities.iter().map(|step| step[j]).collect())
         };
         Panel {
-            title: format!("{}: probability of {mode}; shaded while it is true", reproduction.paper),
+            title: format!(
+                "{}: probability of {mode}; shaded while it is true",
+                title(reproduction)
+            ),
             label: "mean probability",
             highest: 1.0,
             lines: reproduction.filters.iter().map(of_filter).collect(),
@@ -244,7 +255,7 @@ fn draw_plane(area: &Area, reproduction: &Reproduction, first_run: &FirstRun) ->
         range_of(all().map(|place| place[1])),
     );
     let mut chart = ChartBuilder::on(&area)
-        .caption(format!("{}: the first run", reproduction.paper), ("sans-serif", 16))
+        .caption(format!("{}: the first run", title(reproduction)), ("sans-serif", 16))
         .margin(10)
         .margin_right(20)
         .x_label_area_size(35)
@@ -281,7 +292,12 @@ fn draw_plane(area: &Area, reproduction: &Reproduction, first_run: &FirstRun) ->
         .iter()
         .map(|place| Circle::new((place[0], place[1]), 2, MEASURED.filled()));
     chart.draw_series(dots).map_err(not_drawn)?;
-    name("measured (dots)", MEASURED.filled())
+    // The legend of the dots is a dot, where the lines' next line would be.
+    let y = 45 + 20 * i32::try_from(first_run.estimates.len() + 1).unwrap_or(0);
+    let dot = Circle::new((10, y), 2, MEASURED.filled());
+    legend.draw(&dot).map_err(not_drawn)?;
+    let text = Text::new("measured", (26, y - 6), ("sans-serif", 13));
+    legend.draw(&text).map_err(not_drawn)
 }
 
 /// The errors of x (0) or y (1) in the first run.

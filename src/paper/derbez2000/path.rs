@@ -70,10 +70,9 @@ pub fn line(line: Line, acceleration: f64, distance: f64, closest: usize, points
                 acceleration * time,
                 acceleration,
             ),
-            Line::TurningPoint => falling(acceleration, time - closest_time),
             // The step to the closest point still brakes.
             Line::Reversed if k <= closest => -falling(acceleration, time - closest_time),
-            Line::Reversed => falling(acceleration, time - closest_time),
+            Line::TurningPoint | Line::Reversed => falling(acceleration, time - closest_time),
         };
         [x, Vector3::new(distance, 0.0, 0.0)]
     };
