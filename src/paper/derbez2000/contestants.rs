@@ -24,8 +24,8 @@ use crate::model::motion::Mode;
 use crate::steady::gains;
 use nalgebra::{Matrix1, Vector2, Vector3};
 
-/// From what the fixed-gain filters start. Un-mixed filters stand alone, and each is stable as its gain is; mixed ones feed each other, and
-/// are not judged one by one.
+/// From what the fixed-gain filters start. Un-mixed filters stand alone, and each is stable as its gain is; mixed ones feed each other,
+/// and are not judged one by one.
 ///
 /// Evidence: `frozen_probabilities_are_not_judged_by_the_averaged_matrices` (exact).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,10 +52,7 @@ pub enum Noise {
 pub struct Setup {
     /// t, s.
     pub interval: f64,
-    /// From what the fixed-gain filters start. Un-mixed filters stand alone, and each is stable as its gain is; mixed ones feed each other, and
-    /// are not judged one by one.
-    ///
-    /// Evidence: `frozen_probabilities_are_not_judged_by_the_averaged_matrices` (exact).
+    /// From what the fixed-gain filters start.
     pub reading: Reading,
     /// q of both modes, (m/s²)².
     pub noise_variance: f64,
@@ -163,6 +160,8 @@ impl Setup {
     }
 
     /// The steady gain and innovation variance of either mode.
+    ///
+    /// Evidence: `the_fixed_gains_are_those_with_which_the_kalman_filters_end`.
     fn steady_gains(&self, measurement_variance: f64) -> Vec<FixedGain<f64, 3, 1>> {
         let index = gains::tracking_index(&self.noise_variance, &measurement_variance, &self.interval);
         let of_velocity = gains::alpha_beta_root(&index);

@@ -17,6 +17,8 @@ pub fn position(polar: Vector2<f64>) -> Vector2<f64> {
 }
 
 /// How the bias of the transformation is taken out; E[cos θ] of a bearing with the variance σ² is e^(−σ²/2) times that of its mean.
+///
+/// Evidence: `debiasing_takes_out_the_bias_that_it_names`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Debiasing {
     /// Not at all.
@@ -46,6 +48,8 @@ impl Debiasing {
 ///
 /// Source: Bar-Shalom, Li and Kirubarajan 2001, section 10.4.3: the diagonal of J R Jᵀ. The paper filters each coordinate by itself, so
 /// that the covariance of the two is not used.
+///
+/// Evidence: `the_variances_of_a_converted_measurement_are_right_to_first_order`.
 pub fn converted_variances(position: Vector2<f64>, [range, bearing]: [f64; 2]) -> [f64; 2] {
     let squares = position.component_mul(&position);
     let squared_range = squares[0] + squares[1];

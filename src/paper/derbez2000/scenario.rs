@@ -320,6 +320,8 @@ impl Coordinates {
     /// ```
     ///
     /// Source: the accelerations along and across the line of sight, r̈ − r θ̇² and r θ̈ + 2 ṙ θ̇.
+    ///
+    /// Evidence: `range_and_bearing_move_as_their_derivatives_say`.
     pub fn of(self, place: &Place) -> Place {
         if self == Self::Cartesian {
             return *place;
