@@ -29,7 +29,12 @@ pub(super) fn not_yet_judged(s: &Specification, id: &str) -> Judgement {
 pub(super) fn constant_bounded_error(s: &Specification) -> Judgement {
     let [root, interval, acceleration] = ["root", "t", "a"].map(RationalFunction::unknown);
     let mean = settled_error(&root, &interval, &acceleration);
-    let is_settled = next_error(&mean, &root, &interval, &acceleration) == mean;
+    // Jury's conditions for a second-order filter are 0 < α, 0 < β and β < 4 − 2α; the last leaves 4θ.
+    let gain = gains::alpha_beta_gain(&root, &interval);
+    let (alpha, beta) = (gain[0].clone(), gain[1].clone() * interval.clone());
+    let [two, four] = [2, 4].map(RationalFunction::integer);
+    let is_stable = four.clone() - two * alpha - beta == four * root.clone();
+    let is_settled = is_stable && next_error(&mean, &root, &interval, &acceleration) == mean;
     // The scan time and accelerations of the paper, and the damping roots of its least and greatest noises.
     let mut evidence = String::from(
         "Symbolic, for every gain, scan time and acceleration: the error's mean settles at m = a[t²(1−α)/β, t(2α−β)/(2β), 1] and nowhere \
@@ -103,8 +108,11 @@ pub(super) fn moment_matching_bound(s: &Specification) -> Judgement {
             figure(bounds[1].to_f64()),
         );
     }
-    evidence.push_str(
-        " for even odds, where the chain is as symmetric as can be, the spread is twenty times the bound. What holds is μ^{1|2} μ^{2|2} ≤ ¼.",
+    let even = mixing(50, 0, 1) / mixing(50, 1, 0).pow(2);
+    let _ = write!(
+        evidence,
+        " for even odds, where the chain is as symmetric as can be, the spread is {} times the bound. What holds is μ^{{1|2}} μ^{{2|2}} ≤ ¼.",
+        figure(even.to_f64())
     );
     s.judgement("derbez2000-moment-matching-bound", proven_if(holds), evidence)
 }

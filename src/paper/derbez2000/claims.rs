@@ -2,7 +2,7 @@
 //!
 //! After this file the reader knows what the paper's comparison can and cannot mean. The claims are in `spec/derbez2000/claims.toml`, in
 //! the same order; every judge computes its evidence and is called once in [`judge`]. Those that need no runs are in
-//! [`arithmetic`](super::arithmetic).
+//! [`arithmetic`].
 
 use super::arithmetic::published;
 use super::contestants::Reading;
@@ -373,15 +373,17 @@ fn equal_on_acceleration(s: &Specification, runs: &Evidence) -> Judgement {
         ("Its other reading", OTHER_READING),
     ] {
         let all = relative(&runs.acceleration, [filter, CA], Quantity::Position, any);
-        let _ = write!(evidence, " {name}: {}.", extremes(&all));
+        let within = |one: &&Relative| Tally::within(std::slice::from_ref(*one), 0.01).holds == 1;
+        let equal: Vec<&str> = all.iter().filter(within).map(|one| one.choices.as_str()).collect();
+        let _ = write!(
+            evidence,
+            " {name}: {}; within a hundredth at: {}.",
+            extremes(&all),
+            equal.join("; ")
+        );
         tally = tally.and(Tally::within(&all, 0.01));
     }
-    let _ = write!(
-        evidence,
-        " Within a hundredth: {} They are equal where R is a small number and every filter believes its last measurement; with R as large as \
-         the noise of the converted measurements CA is worse.",
-        tally.words()
-    );
+    let _ = write!(evidence, " Within a hundredth: {}", tally.words());
     s.judgement("derbez2000-equal-on-acceleration", tally.verdict(), evidence)
 }
 

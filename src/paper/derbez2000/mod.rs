@@ -5,7 +5,7 @@
 //!
 //! - [`path`]: where the target goes in scenarios 1 and 2;
 //! - [`radar`]: range and bearing, and the positions that are made of them;
-//! - [`scenario`]: two filters, one a coordinate, and a run of them;
+//! - [`scenario`](mod@scenario): two filters, one a coordinate, and a run of them;
 //! - [`contestants`]: the three filters that are compared;
 //! - [`search`]: whether anything that scenario 2 leaves open gives the figures of the published table;
 //! - [`claims`], [`arithmetic`]: the judges of the claims, with runs and without;
