@@ -28,7 +28,7 @@ pub fn gain<T: Field, const N: usize, const M: usize>(
     solve(innovation_covariance, &cross_covariance.transpose()).transpose()
 }
 
-/// Updated mean — derbez2000 (2), zhu2016 (52), liu2017 (20).
+/// Updated mean — derbez2000 (2), (8), zhu2016 (52), liu2017 (20).
 ///
 /// ```text
 /// x̂ = x̂⁻ + W ν,   ν = z − ẑ
@@ -40,9 +40,12 @@ pub fn gain<T: Field, const N: usize, const M: usize>(
 /// | W     | `gain`       | N × M | [`gain`]                       |
 /// | z − ẑ | `innovation` | M     | the residual, angles wrapped   |
 ///
-/// Why: the conditional mean of a joint Gaussian.
+/// Why: the conditional mean of a joint Gaussian. With x̂⁻ = F x̂ and ẑ = H x̂⁻ it is x̂ₙ = Aₙ x̂ₙ₋₁ + Kₙ yₙ, Aₙ = (I − Kₙ H) F, and undone
+/// to the start x̂ₙ = Aₙ⋯A₁ x̂₀ + Σⱼ Aₙ⋯A₍j+1₎ Kⱼ yⱼ, which is derbez2000 (8).
 ///
-/// Evidence: `the_kalman_update_is_conditioning_of_a_gaussian` (symbolic).
+/// Errata: derbez2000 (8) has the product from the first matrix to the last.
+///
+/// Evidence: `the_kalman_update_is_conditioning_of_a_gaussian` (symbolic), `printed_order_of_the_product_is_not_the_recursion` (exact).
 pub fn updated_mean<T: Field, const N: usize, const M: usize>(
     mean: &SVector<T, N>,
     gain: &SMatrix<T, N, M>,
