@@ -37,6 +37,7 @@ fn filter(measurement: Measurement<f64, 4, 2>, noise: [f64; 2], rule: Option<&st
         measurement,
         measurement_noise: SMatrix::from_diagonal(&SVector::from(noise)),
         rule: rule.map(|name| name.parse::<RuleName>().unwrap().rule().unwrap()),
+        fixed_gains: None,
     };
     let estimate = Gaussian {
         mean: vector![15000.0, -180.0, 1000.0, 200.0],

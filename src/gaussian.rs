@@ -28,7 +28,7 @@ impl<T: Field, const N: usize> Gaussian<T, N> {
     }
 }
 
-/// Mean of a mixture — zhu2016 (55), (59), liu2017 (12), (23).
+/// Mean of a mixture — zhu2016 (55), (59), liu2017 (12), (23); derbez2000, not numbered.
 ///
 /// ```text
 /// x̂⁰ʲ = Σᵢ μᵢ∣ⱼ · x̂ⁱ   (mixed)          x̂ = Σⱼ μʲ · x̂ʲ   (combined)
@@ -63,7 +63,7 @@ pub fn mixture_mean<T: Field, const N: usize>(weights: &[T], components: &[Gauss
     sum
 }
 
-/// Covariance of a mixture — zhu2016 (56), (60), liu2017 (12), (24).
+/// Covariance of a mixture — derbez2000 (1), zhu2016 (56), (60), liu2017 (12), (24).
 ///
 /// ```text
 /// P⁰ʲ = Σᵢ μᵢ∣ⱼ · [ Pⁱ + (x̂ⁱ − x̂⁰ʲ)(x̂ⁱ − x̂⁰ʲ)ᵀ ]   (mixed)
@@ -80,7 +80,11 @@ pub fn mixture_mean<T: Field, const N: usize>(weights: &[T], components: &[Gauss
 /// Why: law of total covariance. The second term is the spread of the means; without it the filter is over-confident
 /// exactly when its models disagree.
 ///
-/// Errata: liu2017 (12) starts its sum at i = 0 (notational).
+/// Of two components the spread is μ₁μ₂(x̂¹ − x̂²)(x̂¹ − x̂²)ᵀ, so that of any two estimates at most a quarter of their squared difference.
+///
+/// Errata: liu2017 (12) starts its sum at i = 0 (notational). derbez2000 weighs the spread of two models in step 3 of its algorithm with
+/// another mixing probability than μ₍l∣j₎, bounds it by a square of one in section 3.1, and takes Σ μʲ Pʲ for the error of the combined
+/// estimate, of which it is only an upper bound.
 ///
 /// # Examples
 ///
@@ -94,7 +98,8 @@ pub fn mixture_mean<T: Field, const N: usize>(weights: &[T], components: &[Gauss
 /// assert_eq!(mixture_covariance(&[0.75, 0.25], &[low, high], &vector![1.0]), matrix![4.0]);
 /// ```
 ///
-/// Evidence: `mixed_moments_are_those_of_the_mixture` (symbolic).
+/// Evidence: `mixed_moments_are_those_of_the_mixture` (symbolic), `printed_spread_of_two_models_is_not_the_mixed_covariance`,
+/// `printed_bound_of_the_moment_matching_term_is_exceeded`, `printed_blend_of_the_errors_is_only_an_upper_bound` (exact).
 pub fn mixture_covariance<T: Field, const N: usize>(
     weights: &[T],
     components: &[Gaussian<T, N>],
@@ -127,7 +132,7 @@ pub fn mixture_covariance<T: Field, const N: usize>(
 ///
 /// Errata: zhu2016 (57) writes the matrix 2πV under a scalar root and names the residual as the third argument of N;
 /// liu2017 (21) prints the exponent −n_z/2 for −½, which squares the determinant when n_z = 2 and favours models with a small
-/// innovation covariance.
+/// innovation covariance. derbez2000 (not numbered) has 2π outside the determinant as zhu2016 has, which is right for its one component.
 ///
 /// # Examples
 ///
@@ -141,7 +146,8 @@ pub fn mixture_covariance<T: Field, const N: usize>(
 /// ```
 ///
 /// Evidence: `the_density_integrates_to_one` (property), `printed_likelihood_exponent_squares_the_determinant`,
-/// `printed_likelihood_without_the_determinant_of_two_pi_is_not_a_density`.
+/// `printed_likelihood_without_the_determinant_of_two_pi_is_not_a_density`,
+/// `printed_likelihood_is_a_density_for_scalar_measurements_only`.
 pub fn log_density<T: Real, const M: usize>(residual: &SVector<T, M>, covariance: &Ldl<T, M>) -> T {
     let two_pi = T::pi() * T::integer(2);
     let mut log_determinant_of_two_pi_s = T::zero();

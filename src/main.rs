@@ -56,7 +56,7 @@ enum Command {
 
 #[derive(Args)]
 struct Reproduce {
-    /// The papers; all when none is given [possible: zhu2016, liu2017]
+    /// The papers; all when none is given [possible: derbez2000, zhu2016, liu2017]
     papers: Vec<Paper>,
     /// The number of Monte-Carlo runs; the paper's own when not given
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=1_000_000))]
@@ -80,7 +80,7 @@ struct Reproduce {
 
 #[derive(Args)]
 struct Claims {
-    /// The papers; all when none is given [possible: zhu2016, liu2017]
+    /// The papers; all when none is given [possible: derbez2000, zhu2016, liu2017]
     papers: Vec<Paper>,
     /// The number of Monte-Carlo runs; the paper's own when not given
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=1_000_000))]
@@ -117,7 +117,7 @@ struct Rule {
 
 #[derive(Args)]
 struct ListChoices {
-    /// The papers; all when none is given [possible: zhu2016, liu2017]
+    /// The papers; all when none is given [possible: derbez2000, zhu2016, liu2017]
     papers: Vec<Paper>,
     /// Print JSON instead of text
     #[arg(long)]
@@ -192,12 +192,14 @@ fn reproduce(arguments: &Reproduce) -> Result<String, Refusal> {
     check_that_some_paper_has(&papers, &chosen)?;
     for paper in &papers {
         let chosen = paper.specification().choices_of_this_paper(&chosen);
-        let scenario = paper.scenario(&chosen).map_err(Refusal::request)?;
-        let mut choices = vec![chosen];
-        if !arguments.brief && arguments.choices.is_empty() {
-            choices.extend(paper.specification().single_alternatives());
+        for chosen in paper.simulations(&chosen) {
+            let simulation = paper.simulation(&chosen).map_err(Refusal::request)?;
+            let mut choices = vec![chosen];
+            if !arguments.brief && arguments.choices.is_empty() {
+                choices.extend(paper.open_choices(&choices[0]));
+            }
+            plan.push((*paper, choices, effort.runs.unwrap_or_else(|| simulation.runs())));
         }
-        plan.push((*paper, choices, effort.runs.unwrap_or(scenario.runs)));
     }
     if let Some(directory) = &arguments.out {
         std::fs::create_dir_all(directory)
@@ -270,14 +272,22 @@ fn figure_of(drawn: Result<String, report::figure::NotDrawn>) -> Result<String, 
     drawn.map_err(|error| Refusal::Output(error.to_string()))
 }
 
+/// What the names of a reproduction's files begin with: the paper, and the scenario where it has several.
+fn file_stem(reproduction: &immaculate::paper::result::Reproduction) -> String {
+    match reproduction.choices.chosen("scenario") {
+        Some(scenario) => format!("{}-{scenario}", reproduction.paper),
+        None => reproduction.paper.to_owned(),
+    }
+}
+
 /// The files of `reproduce --out`: everything as JSON, errors over time and mode probabilities as CSV and as figures.
 fn write_files(
     directory: &Path,
     reproduction: &immaculate::paper::result::Reproduction,
     value: &serde_json::Value,
 ) -> Result<(), Refusal> {
-    let paper = reproduction.paper;
-    let files = [
+    let paper = file_stem(reproduction);
+    let mut files = vec![
         (format!("{paper}.json"), json_text(value)),
         (
             format!("{paper}-errors.csv"),
@@ -296,6 +306,16 @@ fn write_files(
             figure_of(report::figure::mode_probabilities(reproduction))?,
         ),
     ];
+    if let Some(first_run) = &reproduction.first_run {
+        files.push((
+            format!("{paper}-path.svg"),
+            figure_of(report::figure::path(reproduction, first_run))?,
+        ));
+        files.push((
+            format!("{paper}-path.csv"),
+            report::reproduction::path_csv(reproduction, first_run),
+        ));
+    }
     for (name, content) in files {
         let path = directory.join(name);
         write_file(&path, &content)?;

@@ -8,7 +8,7 @@ use immaculate::imm::Quantity;
 use immaculate::oracle::check::{Report, Selection, check};
 use immaculate::oracle::problem::{MeasurementFile, ProblemFile};
 use immaculate::oracle::subject::{Answer, Broken, Ready, Subject};
-use immaculate::oracle::trace::{Dimensions, Trace};
+use immaculate::oracle::trace::Trace;
 use immaculate::report::check::text;
 
 #[test]
@@ -80,7 +80,7 @@ impl Subject for Example {
                 .iter()
                 .map(|estimate| Estimate {
                     x: estimate.mean.clone(),
-                    p: estimate.covariance.clone(),
+                    p: estimate.covariance.clone().unwrap(),
                 })
                 .collect(),
         };

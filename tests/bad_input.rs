@@ -5,7 +5,8 @@
 
 mod common;
 
-use common::{Scene, linear_scene, linear_scene_with, polar_scene, rule_of};
+use common::{Scene, fixed_gain_scene, linear_scene, linear_scene_with, polar_scene, rule_of};
+use immaculate::filter::fixed_gain::FixedGain;
 use immaculate::gaussian::Gaussian;
 use immaculate::imm::cycle::Cause;
 use immaculate::imm::{Equations, Imm, Initial, InvalidProblem, Problem};
@@ -266,7 +267,7 @@ fn the_kalman_filter_has_linear_measurements_only() {
     scene.equations = Equations::kalman();
     assert_sentence(
         &scene,
-        "`measurement` is not linear, and the Kalman filter has no other; use a cubature filter (zhu2016 (42))",
+        "`measurement` is not linear, and a filter without points has no other; use a cubature filter (zhu2016 (42))",
     );
 }
 
@@ -285,6 +286,74 @@ fn a_rule_is_given_exactly_to_the_filters_that_draw_points() {
         &scene,
         "`rule` is missing, but the filter's equations draw points (zhu2016 (2))",
     );
+}
+
+#[test]
+fn fixed_gains_are_given_exactly_to_the_filters_that_need_them() {
+    let mut scene = fixed_gain_scene();
+    scene.equations = Equations::kalman();
+    scene.initial = linear_scene().initial;
+    for estimate in &mut scene.initial.modes {
+        estimate.covariance.fill(0.0);
+    }
+    assert_sentence(
+        &scene,
+        "`filter.modes` is given, but the filter's equations compute their own gains (derbez2000 (2))",
+    );
+
+    let mut scene = linear_scene();
+    scene.equations = Equations::fixed_gain_unmixed();
+    assert_sentence(
+        &scene,
+        "`filter.modes` is missing, but the filter's equations need fixed gains (derbez2000 (2))",
+    );
+}
+
+#[test]
+fn a_filter_with_fixed_gains_has_no_covariance() {
+    let mut scene = fixed_gain_scene();
+    scene.initial.modes[1].covariance[(2, 2)] = 1.0;
+    assert_sentence(
+        &scene,
+        "`initial.modes[1].covariance` is given, but filters with fixed gains have no covariance (derbez2000 (2))",
+    );
+}
+
+#[test]
+fn fixed_gains_are_checked_mode_by_mode() {
+    let with = |spoil: fn(&mut Vec<FixedGain<f64, 4, 2>>)| {
+        let mut scene = fixed_gain_scene();
+        spoil(scene.problem.fixed_gains.as_mut().unwrap());
+        scene
+    };
+    assert_sentence(
+        &with(|modes| modes.truncate(2)),
+        "`filter.modes` has 2 entries where there are 3 modes (derbez2000 (2))",
+    );
+    assert_sentence(
+        &with(|modes| modes[1].gain[(3, 1)] = f64::INFINITY),
+        "`filter.modes[1].gain` has an entry that is not finite (derbez2000 (2))",
+    );
+    assert_sentence(
+        &with(|modes| modes[2].innovation_covariance[(0, 0)] = f64::NAN),
+        "`filter.modes[2].innovation_covariance` has an entry that is not finite (derbez2000 (4))",
+    );
+    assert_sentence(
+        &with(|modes| modes[2].innovation_covariance[(0, 1)] += 1.0),
+        "`filter.modes[2].innovation_covariance` is not symmetric (derbez2000 (4))",
+    );
+    assert_sentence(
+        &with(|modes| modes[0].innovation_covariance[(1, 1)] = -900.0),
+        "`filter.modes[0].innovation_covariance` is not positive definite (derbez2000 (4))",
+    );
+
+    let mut scene = fixed_gain_scene();
+    scene.problem.measurement = polar([0, 2], [0.0, 0.0]);
+    assert_sentence(
+        &scene,
+        "`measurement` is not linear, and a filter without points has no other; use a cubature filter (zhu2016 (42))",
+    );
+    assert!(fixed_gain_scene().filter().is_ok());
 }
 
 #[test]
@@ -714,6 +783,7 @@ fn any_problem() -> impl Strategy<Value = (Problem<f64, 2, 2>, Initial<f64, 2>)>
                     measurement,
                     measurement_noise,
                     rule,
+                    fixed_gains: None,
                 },
                 Initial {
                     modes: modes_0,
@@ -870,6 +940,8 @@ fn problem_test(error: &InvalidProblem) -> &'static str {
         InvalidProblem::NotPositive { .. } => "covariances_are_positive_definite_and_process_noises_semidefinite",
         InvalidProblem::NotLinear => "the_kalman_filter_has_linear_measurements_only",
         InvalidProblem::Rule { .. } => "a_rule_is_given_exactly_to_the_filters_that_draw_points",
+        InvalidProblem::FixedGains { .. } => "fixed_gains_are_given_exactly_to_the_filters_that_need_them",
+        InvalidProblem::CovarianceGiven { .. } => "a_filter_with_fixed_gains_has_no_covariance",
         InvalidProblem::RuleLengths { .. } => "a_rule_has_one_weight_a_point",
         InvalidProblem::Position { .. } => "the_measured_position_is_in_the_state",
     }

@@ -94,10 +94,15 @@ fn reproduce_sets_published_and_computed_figures_side_by_side() {
         assert!(text.contains(part), "{part} in\n{text}");
     }
     let all = json(&["reproduce", "--runs", "5", "--json"]);
-    let [zhu, liu] = &list(&all["papers"])[..] else {
-        panic!("two papers");
+    let [manoeuvres, acceleration, zhu, liu] = &list(&all["papers"])[..] else {
+        panic!("three papers, one of them with two scenarios");
     };
-    for (paper, key, filters, figures) in [(zhu, "zhu2016", 5, 20), (liu, "liu2017", 4, 8)] {
+    for (paper, key, filters, figures) in [
+        (manoeuvres, "derbez2000", 3, 9),
+        (acceleration, "derbez2000", 3, 0),
+        (zhu, "zhu2016", 5, 20),
+        (liu, "liu2017", 4, 8),
+    ] {
         assert_eq!(list(&paper["published_and_computed"]).len(), figures);
         for figure in list(&paper["published_and_computed"]) {
             for field in [
@@ -176,6 +181,7 @@ fn out_writes_the_files_that_it_names() {
             assert_eq!(line.split(',').count(), columns, "{name}: {line}");
         }
     }
+    assert!(!directory.join("zhu2016-path.svg").exists(), "the paper shows no run");
     for name in ["zhu2016-errors.svg", "zhu2016-mode-probabilities.svg"] {
         let figure = text(name);
         assert!(
@@ -187,6 +193,33 @@ fn out_writes_the_files_that_it_names() {
     }
 }
 
+#[test]
+fn out_writes_both_scenarios_of_a_paper_with_two_and_the_run_that_it_shows() {
+    let directory = temporary("out of two scenarios");
+    let place = directory.to_str().unwrap();
+    succeeds(&["reproduce", "derbez2000", "--runs", "2", "--brief", "--out", place]);
+    for stem in ["derbez2000", "derbez2000-acceleration"] {
+        let text = |name: &str| std::fs::read_to_string(directory.join(format!("{stem}{name}"))).unwrap();
+        let value: Value = serde_json::from_str(&text(".json")).unwrap();
+        let steps = value["reproduction"]["steps"].as_u64().unwrap();
+        let first_run = &value["reproduction"]["first_run"];
+        assert_eq!(list(&first_run["truth"]).len() as u64, steps);
+        assert_eq!(list(&first_run["estimates"]).len(), 3);
+        let path = text("-path.csv");
+        assert_eq!(path.lines().next(), Some("time,what,x,y"));
+        // Truth, measurements and three filters.
+        assert_eq!(path.lines().count() as u64, 1 + 5 * steps);
+        for name in ["-path.svg", "-errors.svg", "-mode-probabilities.svg"] {
+            let figure = text(name);
+            assert!(
+                figure.starts_with("<svg") && figure.contains("Fixed Gain"),
+                "{stem}{name}"
+            );
+            assert!(!figure.contains("NaN"), "{stem}{name}");
+        }
+    }
+}
+
 // The same answer to the same question
 
 #[test]
@@ -194,7 +227,7 @@ fn the_same_seed_gives_the_same_figures_and_another_seed_others() {
     let figures = |seed: &str| {
         let mut answer = json(&["reproduce", "--runs", "3", "--brief", "--seed", seed, "--json"]);
         let removed = remove_times(&mut answer);
-        assert_eq!(removed, 9, "one time a filter, and nothing else differs");
+        assert_eq!(removed, 15, "one time a filter, and nothing else differs");
         answer
     };
     assert_eq!(figures("5"), figures("5"));
@@ -250,9 +283,15 @@ fn a_reader_that_stops_reading_is_no_error() {
 #[test]
 fn what_does_not_exist_is_named_beside_what_does() {
     for (arguments, parts) in [
-        (&["reproduce", "zhu2017"][..], &["`zhu2017`", "zhu2016, liu2017"][..]),
-        (&["claims", "derbez2000"], &["`derbez2000`", "zhu2016, liu2017"]),
-        (&["choices", "x"], &["`x`", "zhu2016, liu2017"]),
+        (
+            &["reproduce", "zhu2017"][..],
+            &["`zhu2017`", "derbez2000, zhu2016, liu2017"][..],
+        ),
+        (
+            &["claims", "derbez2001"],
+            &["`derbez2001`", "derbez2000, zhu2016, liu2017"],
+        ),
+        (&["choices", "x"], &["`x`", "derbez2000, zhu2016, liu2017"]),
         (
             &["rule", "simplex", "-n", "4"],
             &["`simplex`", "cubature-3, unscented, cubature-5, simplex-5"],

@@ -67,6 +67,12 @@ fn a_trace_shows_every_value_with_its_equation() {
         assert!(text.contains(&heading), "{heading}");
     }
     assert!(succeeds(&["trace", "missed.one"]).contains("no detection"));
+    let text = succeeds(&["trace", "step.fixed-gain"]);
+    assert!(text.contains("  gain  —  derbez2000, section 3, given\n"), "{text}");
+    assert!(
+        !text.contains("covariance  —  zhu2016"),
+        "there is no covariance:\n{text}"
+    );
 }
 
 /// Exact: JSON and CSV are the doubles of the library.
@@ -346,7 +352,7 @@ fn nothing_is_written_when_copying_is_refused() {
 fn verified_cases_are_counted() {
     let text = succeeds(&["cases", "verify", "--case", "update.kalman", "--case", "rejected.shape"]);
     assert!(
-        text.contains("4 of 4 cases proven again") && text.contains("3 of the cases must be rejected, and are"),
+        text.contains("6 of 6 cases proven again") && text.contains("5 of the cases must be rejected, and are"),
         "{text}"
     );
     let value = json_of(&["cases", "verify", "--case", "update.kalman", "--json"]);

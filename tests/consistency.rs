@@ -392,6 +392,7 @@ fn linear(noise_factor: f64, measurement_factor: f64) -> Model {
         measurement: Measurement::Linear(matrix![1.0, 0.0, 0.0, 0.0; 0.0, 0.0, 1.0, 0.0]),
         measurement_noise: matrix![25.0, 5.0; 5.0, 16.0] * measurement_factor,
         rule: None,
+        fixed_gains: None,
     }
 }
 

@@ -7,13 +7,17 @@
 // Doubles are compared exactly: either every operation on them is exact, or they must be the nearest ones.
 #![allow(clippy::float_cmp)]
 
-use immaculate::filter::{cubature, kalman};
+use immaculate::filter::{cubature, kalman, update};
 use immaculate::gaussian::{Gaussian, mixture_covariance, mixture_mean};
 use immaculate::imm::diagonal_mixing;
 use immaculate::matrix::{
     NotPositiveDefinite, check_positive_definite, cholesky, is_positive_semidefinite, ldl, quadratic_form, solve,
 };
 use immaculate::model::Measurement;
+use immaculate::model::acceleration::{
+    acceleration_response, constant_acceleration, embedded_constant_velocity, embedded_velocity_response,
+    position_matrix, response_noise,
+};
 use immaculate::model::motion::{acceleration_noise, constant_velocity, coordinated_turn, integrated_noise};
 use immaculate::number::{Field, Rational, RationalFunction, Surd};
 use immaculate::rule::fifth_degree::{self, fifth_degree};
@@ -24,7 +28,11 @@ use immaculate::rule::sphere::{SphericalRule, on_axes, on_axes_and_diagonals, on
 use immaculate::rule::third_degree::{self, third_degree};
 use immaculate::rule::unscented::{self, Parameters, unscented};
 use immaculate::rule::{ExactRule, InvalidRule, Rule, RuleName, printed};
-use nalgebra::{SMatrix, SVector, matrix, vector};
+use immaculate::steady::gains::{
+    alpha_beta_covariance, alpha_beta_gain, alpha_beta_gamma_covariance, alpha_beta_gamma_gain, alpha_beta_gamma_index,
+    alpha_beta_index, innovation_variance,
+};
+use nalgebra::{SMatrix, SVector, Vector3, matrix, vector};
 use num_traits::{One, Zero};
 use std::collections::BTreeMap;
 
@@ -939,6 +947,109 @@ fn a_turn_of_rate_zero_is_constant_velocity() {
         // A rate that is not zero turns, however slowly: the velocity is rotated.
         assert_ne!(coordinated_turn(&0.01, &interval), straight);
     }
+}
+
+// Filters with fixed gains
+
+/// Modes that are the same are one filter whatever weights mix them: to mix equal means under weights that sum to one is to keep them.
+#[test]
+fn identical_modes_with_fixed_gains_are_the_filter_alone() {
+    let h: SMatrix<Rational, 1, 3> = position_matrix();
+    let (motion, gain) = (constant_acceleration(&r(2, 1)), steady(&r(1, 3), &r(2, 1)).1);
+    let start = vector![r(5, 1), r(-3, 2), r(1, 4)];
+    let mut alone = start.clone();
+    let mut modes = vec![estimate_of(start); 3];
+    for k in 0..6 {
+        let z = vector![r(7 * k * k - 20, 3)];
+        let weights = |j: i64| {
+            let (first, second) = (r(j + k, 11 + k), r(2 * j + 1, 12 + j));
+            vec![first.clone(), second.clone(), r(1, 1) - first - second]
+        };
+        let mixed: Vec<_> = (0..3).map(|j| mixture_mean(&weights(j), &modes)).collect();
+        modes = mixed
+            .iter()
+            .map(|mean| estimate_of(fixed_step(&motion, &h, &gain, mean, &z)))
+            .collect();
+        alone = fixed_step(&motion, &h, &gain, &alone, &z);
+        for mode in &modes {
+            assert_eq!(mode.mean, alone, "step {k}");
+        }
+        assert_eq!(mixture_mean(&weights(1), &modes), alone, "combined, step {k}");
+    }
+}
+
+/// A Kalman filter that starts with its equilibrium covariance stays there, and its gain is the fixed one: the same means for ever.
+#[test]
+fn a_kalman_filter_at_its_equilibrium_is_the_fixed_gain_filter() {
+    let h: SMatrix<Rational, 1, 3> = position_matrix();
+    let (t, noise) = (r(2, 1), r(1, 20));
+    for root in [r(1, 2), r(1, 7), r(9, 10)] {
+        let (velocity, acceleration) = steady(&root, &t);
+        let s = innovation_variance(&root, &noise);
+        let scale =
+            |index: Rational| index.clone() * index * noise.clone() / (t.clone() * t.clone() * t.clone() * t.clone());
+        let filters = [
+            (
+                embedded_constant_velocity(&t),
+                response_noise(&embedded_velocity_response(&t), &scale(alpha_beta_index(&root))),
+                alpha_beta_covariance(&root, &noise, &t),
+                velocity,
+            ),
+            (
+                constant_acceleration(&t),
+                response_noise(&acceleration_response(&t), &scale(alpha_beta_gamma_index(&root))),
+                alpha_beta_gamma_covariance(&root, &noise, &t),
+                acceleration,
+            ),
+        ];
+        for (motion, process_noise, predicted, gain) in filters {
+            let mut fixed = vector![r(500, 1), r(-18, 1), r(0, 1)];
+            let mut mean = fixed.clone();
+            let mut covariance = update::updated_covariance(&predicted, &gain, &matrix![s.clone()]);
+            for k in 0..4 {
+                let z = vector![r(13 * k * k - 90, 7)];
+                let before = kalman::predicted_covariance(&motion, &covariance, &process_noise);
+                let innovation_covariance = kalman::innovation_covariance(&h, &before, &matrix![noise.clone()]);
+                let cross_covariance = kalman::cross_covariance(&before, &h);
+                let own = update::gain(&cross_covariance, &ldl(&innovation_covariance));
+                covariance = update::updated_covariance(&before, &own, &innovation_covariance);
+                mean = fixed_step(&motion, &h, &own, &mean, &z);
+                fixed = fixed_step(&motion, &h, &gain, &fixed, &z);
+                assert_eq!((before, own), (predicted.clone(), gain.clone()), "step {k}");
+                assert_eq!(innovation_covariance, matrix![s.clone()], "step {k}");
+                assert_eq!(mean, fixed, "step {k}");
+            }
+        }
+    }
+}
+
+/// The steady gains of constant velocity and constant acceleration with the same damping root.
+fn steady(root: &Rational, interval: &Rational) -> (Vector3<Rational>, Vector3<Rational>) {
+    (alpha_beta_gain(root, interval), alpha_beta_gamma_gain(root, interval))
+}
+
+/// F x̂ + K (z − H F x̂), the fixed-gain update as derbez2000 prints it.
+fn fixed_step(
+    motion: &SMatrix<Rational, 3, 3>,
+    h: &SMatrix<Rational, 1, 3>,
+    gain: &Vector3<Rational>,
+    mean: &Vector3<Rational>,
+    z: &SVector<Rational, 1>,
+) -> Vector3<Rational> {
+    let predicted = motion * mean;
+    &predicted + gain * (z - h * &predicted)
+}
+
+/// An estimate without a covariance.
+fn estimate_of(mean: Vector3<Rational>) -> Gaussian<Rational, 3> {
+    Gaussian {
+        mean,
+        ..Gaussian::zeros()
+    }
+}
+
+fn r(numerator: i64, denominator: i64) -> Rational {
+    Rational::new(numerator, denominator)
 }
 
 // Helpers

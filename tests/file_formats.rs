@@ -22,20 +22,21 @@ use std::path::{Path, PathBuf};
 const LINEAR: &str = "step.n4-m2.two-modes";
 const POLAR: &str = "step.cubature-5";
 const UNSCENTED: &str = "step.unscented";
+const FIXED: &str = "step.fixed-gain";
 
 // Problems that cannot be read
 
 #[test]
 fn the_problems_that_are_spoilt_below_are_right() {
-    for id in [LINEAR, POLAR, UNSCENTED] {
+    for id in [LINEAR, POLAR, UNSCENTED, FIXED] {
         assert_eq!(ProblemFile::read(&text_of(id)).map(|problem| problem.id), Ok(id.into()));
     }
 }
 
-/// Exact, over every key of every object of three files.
+/// Exact, over every key of every object of four files.
 #[test]
 fn every_key_that_is_missing_is_named_with_its_place() {
-    for id in [LINEAR, POLAR, UNSCENTED] {
+    for id in [LINEAR, POLAR, UNSCENTED, FIXED] {
         let whole = value_of(id);
         for pointer in pointers(&whole) {
             let (parent, key) = pointer.rsplit_once('/').unwrap();
@@ -54,10 +55,10 @@ fn every_key_that_is_missing_is_named_with_its_place() {
     }
 }
 
-/// Exact, over every object of three files.
+/// Exact, over every object of four files.
 #[test]
 fn every_key_that_does_not_exist_is_named_with_its_place() {
-    for id in [LINEAR, POLAR, UNSCENTED] {
+    for id in [LINEAR, POLAR, UNSCENTED, FIXED] {
         let whole = value_of(id);
         for pointer in std::iter::once(String::new()).chain(pointers(&whole)) {
             let mut spoilt = whole.clone();
@@ -77,10 +78,10 @@ fn every_key_that_does_not_exist_is_named_with_its_place() {
     }
 }
 
-/// Exact, over every value of three files.
+/// Exact, over every value of four files.
 #[test]
 fn every_value_of_the_wrong_kind_is_named_with_its_place() {
-    for id in [LINEAR, POLAR, UNSCENTED] {
+    for id in [LINEAR, POLAR, UNSCENTED, FIXED] {
         let whole = value_of(id);
         for pointer in pointers(&whole) {
             let mut spoilt = whole.clone();
@@ -104,10 +105,10 @@ fn every_value_of_the_wrong_kind_is_named_with_its_place() {
     }
 }
 
-/// Exact, over every number of three files. In JSON a number that is not finite is one beyond the doubles, or a word.
+/// Exact, over every number of four files. In JSON a number that is not finite is one beyond the doubles, or a word.
 #[test]
 fn every_number_that_is_not_finite_is_named_with_its_place() {
-    for id in [LINEAR, POLAR, UNSCENTED] {
+    for id in [LINEAR, POLAR, UNSCENTED, FIXED] {
         let whole = value_of(id);
         for pointer in pointers(&whole) {
             if !whole.pointer(&pointer).unwrap().is_f64() {
@@ -158,7 +159,11 @@ type Defect = (&'static str, &'static str, Value, Class, &'static str, &'static 
 /// Each defect of the table in the file gives its own sentence: exact, by examples.
 #[test]
 fn every_defect_has_its_class_its_place_and_its_sentence() {
-    for (id, pointer, new, class, place, words) in wrong_shapes().into_iter().chain(wrong_values()) {
+    for (id, pointer, new, class, place, words) in wrong_shapes()
+        .into_iter()
+        .chain(wrong_values())
+        .chain(wrong_fixed_gains())
+    {
         let mut spoilt = value_of(id);
         *spoilt.pointer_mut(pointer).unwrap_or_else(|| panic!("{id}{pointer}")) = new;
         let invalid = refusal(&spoilt);
@@ -172,7 +177,10 @@ fn every_defect_has_its_class_its_place_and_its_sentence() {
 
 #[test]
 fn every_class_of_refusal_has_a_defect_in_the_tables() {
-    let all = wrong_shapes().into_iter().chain(wrong_values());
+    let all = wrong_shapes()
+        .into_iter()
+        .chain(wrong_values())
+        .chain(wrong_fixed_gains());
     let mut classes: Vec<&str> = all.map(|defect| defect.3.name()).collect();
     // That one is a law of its own above.
     classes.push(Class::NotFinite.name());
@@ -519,7 +527,7 @@ fn wrong_values() -> Vec<Defect> {
             json!("particle"),
             Unknown,
             "problem.filter.kind",
-            "known are kalman, cubature, unscented",
+            "known are kalman, cubature, unscented, fixed-gain",
         ),
         (
             LINEAR,
@@ -620,6 +628,77 @@ fn wrong_values() -> Vec<Defect> {
     ]
 }
 
+/// What can be wrong with fixed gains, and with covariances where there are none or must be some.
+fn wrong_fixed_gains() -> Vec<Defect> {
+    use Class::{Format, NotSymmetric, Shape, Unknown};
+    vec![
+        (
+            FIXED,
+            "/filter/mixing",
+            json!("half-mixed"),
+            Unknown,
+            "problem.filter.mixing",
+            "known are mixed, unmixed",
+        ),
+        (
+            FIXED,
+            "/filter/modes",
+            json!([]),
+            Shape,
+            "problem.filter.modes",
+            "has 0 entries where 3 are needed",
+        ),
+        (
+            FIXED,
+            "/filter/modes/1/gain/3",
+            json!([0.009]),
+            Shape,
+            "problem.filter.modes[1].gain[3]",
+            "has 1 entries where 2 are needed",
+        ),
+        (
+            FIXED,
+            "/filter/modes/2/innovation_covariance/0/1",
+            json!(34),
+            NotSymmetric,
+            "problem.filter.modes[2].innovation_covariance",
+            "not symmetric (derbez2000 (4))",
+        ),
+        (
+            FIXED,
+            "/filter/modes/2",
+            json!({"gain": [[1]]}),
+            Format,
+            "problem.filter.modes[2].innovation_covariance",
+            "is missing",
+        ),
+        (
+            FIXED,
+            "/initial/modes/0",
+            json!({"mean": [1, 2, 3, 4], "covariance": [[1]]}),
+            Format,
+            "problem.initial.modes[0].covariance",
+            "filters with fixed gains have no covariance",
+        ),
+        (
+            LINEAR,
+            "/initial/modes/0",
+            json!({"mean": [1, 2, 3, 4]}),
+            Format,
+            "problem.initial.modes[0].covariance",
+            "is missing",
+        ),
+        (
+            LINEAR,
+            "/initial/modes/0/covariance",
+            json!(null),
+            Format,
+            "problem.initial.modes[0].covariance",
+            "invalid type: null",
+        ),
+    ]
+}
+
 /// A shape that is not built: consistent in itself, but of seven entries.
 #[test]
 fn a_shape_that_is_not_built_is_refused_with_those_that_are() {
@@ -636,7 +715,7 @@ fn a_shape_that_is_not_built_is_refused_with_those_that_are() {
     }
     for estimate in &mut problem.initial.modes {
         estimate.mean = vec![0.0; 7];
-        estimate.covariance.clone_from(&identity);
+        estimate.covariance = Some(identity.clone());
     }
     let invalid = problem.check().unwrap_err();
     assert_eq!((invalid.class, invalid.place.as_str()), (Class::Shape, "problem.state"));
@@ -679,14 +758,13 @@ fn the_schemas_take_what_is_published_and_refuse_what_is_spoilt() {
     for case in all() {
         let id = &case.problem.id;
         let (problem, trace) = (parsed(case.problem_text), parsed(case.trace_text));
-        assert_eq!(
-            against_schema(&problem, &problems, &problems, "problem"),
-            Ok(()),
-            "{id}"
-        );
+        // A problem that must be refused for its structure is the schema's to refuse, too.
+        let is_of_the_format = case.expected != Expected::Rejection(Class::Format);
+        let found = against_schema(&problem, &problems, &problems, "problem");
+        assert_eq!(found.is_ok(), is_of_the_format, "{id}: {found:?}");
         assert_eq!(against_schema(&trace, &traces, &traces, "trace"), Ok(()), "{id}");
     }
-    for id in [LINEAR, POLAR, UNSCENTED] {
+    for id in [LINEAR, POLAR, UNSCENTED, FIXED] {
         let whole = value_of(id);
         for pointer in pointers(&whole) {
             let mut spoilt = whole.clone();
@@ -730,7 +808,7 @@ fn reading_and_writing_a_trace_is_the_identity() {
         assert!(Value::Array(trace.steps_as_json()) == steps, "{id}: JSON");
         for text in [
             csv::write(id, trace, "", |_, _| String::new()),
-            long_csv(id, trace, case.trace_text),
+            long_csv(&case.problem, trace, case.trace_text),
         ] {
             assert!(
                 csv::read(&text, id, trace.dimensions).as_ref() == Ok(trace),

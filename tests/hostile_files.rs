@@ -343,7 +343,7 @@ fn change(problem: &mut ProblemFile, what: usize, at: Index, number: f64) {
     match what {
         0 => any(&mut problem.modes[mode].transition),
         1 => scale(&mut problem.modes[mode].noise),
-        2 => scale(&mut problem.initial.modes[mode].covariance),
+        2 => problem.initial.modes[mode].covariance.iter_mut().for_each(scale),
         3 => {
             let mean = &mut problem.initial.modes[mode].mean;
             let entry = at.index(mean.len());

@@ -15,7 +15,7 @@ mod common;
 
 use common::{
     CHAIN, ROUNDOFF, RULES, Scene, TURN_RATE, all_scenes, bits, bits_of, bits_of_mode, distance, distance_of_runs,
-    linear_scene, linear_scene_with, mode, polar_scene_seen_from, rounding_of,
+    fixed_gain_scene, linear_scene, linear_scene_with, mode, polar_scene_seen_from, rounding_of,
 };
 use immaculate::filter::{cubature, kalman, raw, update};
 use immaculate::gaussian::{Gaussian, log_density, mixture_covariance, mixture_mean};
@@ -896,6 +896,106 @@ fn negative_weights_can_leave_no_covariance_and_the_failure_names_it() {
     for rule in RULES {
         assert!(over_the_sensor(common::rule_of(rule)).try_run().is_ok(), "{rule}");
     }
+}
+
+// Filters with fixed gains
+
+/// Read without mixed states, each mode is its filter alone, bit for bit, whatever is measured and whatever the others are.
+#[test]
+fn unmixed_modes_with_fixed_gains_stand_alone() {
+    let mut scene = fixed_gain_scene();
+    scene.equations = Equations::fixed_gain_unmixed();
+    let run = scene.run();
+    for j in 0..3 {
+        let alone = fixed_gain_run(&scene, j);
+        for (step, alone) in run.iter().zip(&alone) {
+            assert_eq!(bits(&step.updated[j].mean), bits(alone), "mode {j}, step {}", step.step);
+        }
+    }
+    // With other modes beside it, another chain and other likelihoods, the first mode does the same.
+    let mut other = scene.clone();
+    other.problem.transition = CHAIN.iter().rev().map(|row| row.to_vec()).collect();
+    for given in &mut other.problem.fixed_gains.as_mut().unwrap()[1..] {
+        given.gain *= 0.5;
+        given.innovation_covariance *= 3.0;
+    }
+    other.initial.modes[2].mean *= 1.5;
+    for (a, b) in run.iter().zip(&other.run()) {
+        assert_eq!(bits(&a.updated[0].mean), bits(&b.updated[0].mean));
+        assert_ne!(a.mode_probabilities, b.mode_probabilities);
+    }
+    // The other reading does not stand alone.
+    scene.equations = Equations::fixed_gain();
+    assert_ne!(scene.run()[0].updated[0].mean, run[0].updated[0].mean);
+}
+
+/// Where no mode is left for another the two readings are one, bit for bit.
+#[test]
+fn the_two_readings_of_fixed_gains_agree_under_the_identity_transition() {
+    let mut scene = fixed_gain_scene();
+    scene.problem.transition = identity_chain(3);
+    let mixed = scene.run();
+    scene.equations = Equations::fixed_gain_unmixed();
+    for (a, b) in mixed.iter().zip(&scene.run()) {
+        assert_eq!(bits_of_step(a), bits_of_step(b), "step {}", a.step);
+    }
+}
+
+/// Modes with the same motion, gain and innovation covariance are one filter along a whole run, for any chain; exactly so in `exact.rs`.
+#[test]
+fn identical_modes_with_fixed_gains_are_one_filter_for_any_transition_matrix() {
+    let cyclic = vec![vec![0.0, 1.0, 0.0], vec![0.0, 0.0, 1.0], vec![1.0, 0.0, 0.0]];
+    for chain in [CHAIN.map(|row| row.to_vec()).to_vec(), cyclic] {
+        let mut scene = with_identical_modes(&fixed_gain_scene());
+        let given = scene.problem.fixed_gains.as_mut().unwrap();
+        *given = vec![given[0].clone(); 3];
+        scene.problem.transition = chain;
+        for (step, alone) in scene.run().iter().zip(&fixed_gain_run(&scene, 0)) {
+            // Each step rounds an entry fewer than a hundred times, and the gains forget what was.
+            let allowed = 100.0 * 30.0 * ROUNDOFF * alone.amax();
+            assert!((step.combined.mean - alone).amax() <= allowed, "step {}", step.step);
+        }
+    }
+}
+
+/// What a filter with fixed gains does not compute is undecided in its record, and what it is given is there where it is used.
+#[test]
+fn a_filter_with_fixed_gains_has_no_covariance_in_its_record() {
+    let scene = fixed_gain_scene();
+    let zero = scene.filter().unwrap();
+    let given = scene.problem.fixed_gains.as_ref().unwrap();
+    for step in std::iter::once(zero.current()).chain(&scene.run()) {
+        let modes = step.mixed.iter().chain(&step.predicted).chain(&step.updated);
+        for estimate in modes.chain([&step.combined_prediction, &step.combined]) {
+            assert!(
+                estimate.covariance.iter().all(|entry| entry.is_nan()),
+                "step {}",
+                step.step
+            );
+        }
+        assert!(step.combined.mean.iter().all(|entry| entry.is_finite()));
+        for j in (0..3).filter(|_| step.step > 0) {
+            let is_used = step.measurement.is_some();
+            assert_eq!(step.gains[j] == given[j].gain, is_used, "step {}", step.step);
+            assert_eq!(
+                step.innovation_covariances[j] == given[j].innovation_covariance,
+                is_used
+            );
+        }
+    }
+}
+
+/// The means of mode j's filter by itself.
+fn fixed_gain_run(scene: &Scene, j: usize) -> Vec<Vector4<f64>> {
+    let (h, mode) = (scene.problem.measurement.matrix(), &scene.problem.modes[j]);
+    let gain = scene.problem.fixed_gains.as_ref().unwrap()[j].gain;
+    let mut mean = scene.initial.modes[j].mean;
+    let step = |z: &Option<Vector2<f64>>| {
+        let predicted = mode.transition * mean;
+        mean = z.map_or(predicted, |z| predicted + gain * (z - h * predicted));
+        mean
+    };
+    scene.measurements.iter().map(step).collect()
 }
 
 // Helpers

@@ -9,16 +9,25 @@ mod common;
 use common::{ROUNDOFF, polar_scene};
 use immaculate::filter::cubature::{point, propagated_point, weighted_covariance, weighted_mean};
 use immaculate::filter::raw::{raw_covariance, raw_second_moment};
-use immaculate::gaussian::log_density;
+use immaculate::filter::{kalman, update};
+use immaculate::gaussian::{Gaussian, log_density, mixture_covariance, mixture_mean};
 use immaculate::imm::printed::{cubature_with_likelihood_21, log_density_21, log_density_57, mode_probability_22};
-use immaculate::imm::probability::{evidence, mode_probability, relative_likelihood};
+use immaculate::imm::probability::{
+    evidence, mixing_probability, mode_probability, predicted_mode_probability, relative_likelihood,
+};
 use immaculate::matrix::ldl;
+use immaculate::model::acceleration::{
+    acceleration_response, constant_acceleration, embedded_constant_velocity, embedded_velocity_response,
+    position_matrix, response_noise,
+};
 use immaculate::model::{Measurement, PolarComponent};
 use immaculate::number::{Field, Rational, Real, Surd};
 use immaculate::rule::Rule;
 use immaculate::rule::fifth_degree::{diagonals_minus, diagonals_plus, fifth_degree};
 use immaculate::rule::third_degree::third_degree;
-use nalgebra::{Matrix1, Matrix2, SMatrix, SVector, Vector1, Vector2, Vector4, matrix, vector};
+use nalgebra::{
+    Matrix1, Matrix2, Matrix3, Matrix4, SMatrix, SVector, Vector1, Vector2, Vector3, Vector4, matrix, vector,
+};
 use num_traits::Zero;
 use std::f64::consts::PI;
 
@@ -301,6 +310,304 @@ fn plain_arctangent_confuses_opposite_quadrants() {
     // Straight to the left: the printed bearing is 0, the corrected one π.
     assert_eq!(printed(&vector![-1.0, 0.0]).abs().to_bits(), 0.0_f64.to_bits());
     assert_eq!(corrected(&vector![-1.0, 0.0]).to_bits(), PI.to_bits());
+}
+
+// derbez2000
+
+/// derbez2000 (2): the last line starts from the mixed covariance of the step before.
+#[test]
+fn printed_update_from_the_mixed_covariance_is_not_conditioning() {
+    // The numbers of the erratum: F = 2, Q = 1, R = 1, mixed variance 1.
+    let one = Matrix1::new(whole_rational(1));
+    let predicted = kalman::predicted_covariance(&Matrix1::new(whole_rational(2)), &one, &one);
+    let s = kalman::innovation_covariance(&one, &predicted, &one);
+    let gain = update::gain(&kalman::cross_covariance(&predicted, &one), &ldl(&s));
+    let corrected = update::updated_covariance(&predicted, &gain, &s);
+    let printed = (&one - &gain * &one) * &one;
+    assert_eq!(gain[0], Rational::new(5, 6));
+    // Conditioning: the inverses of the variances add.
+    assert_eq!(corrected[0], Rational::new(5, 6));
+    assert_eq!(
+        Rational::new(1, 1) / corrected[0].clone(),
+        Rational::new(1, 5) + Rational::new(1, 1)
+    );
+    assert_eq!(printed[0], Rational::new(1, 6));
+
+    // Constant acceleration: what is printed is no covariance at all, and the corrected line is the filter's.
+    let h = position_matrix::<Rational>();
+    let motion = constant_acceleration(&whole_rational(2));
+    let mixed = matrix![3, 1, 0; 1, 2, 1; 0, 1, 4].map(whole_rational);
+    let noise = response_noise(&acceleration_response(&whole_rational(2)), &whole_rational(5));
+    let predicted = kalman::predicted_covariance(&motion, &mixed, &noise);
+    let s = kalman::innovation_covariance(&h, &predicted, &one);
+    let gain = update::gain(&kalman::cross_covariance(&predicted, &h), &ldl(&s));
+    let rest = Matrix3::identity() - &gain * &h;
+    assert_eq!(&rest * &predicted, update::updated_covariance(&predicted, &gain, &s));
+    let printed = &rest * &mixed;
+    assert_ne!(printed, printed.transpose());
+}
+
+/// derbez2000 (8): Π from 1 to n, read from left to right, has the matrices in the wrong order.
+#[test]
+fn printed_order_of_the_product_is_not_the_recursion() {
+    // The numbers of the erratum: constant velocity with t = 1, measured in position, and two gains.
+    let (motion, h) = (
+        matrix![1, 1; 0, 1].map(whole_rational),
+        matrix![1, 0].map(whole_rational),
+    );
+    let gains = [vector![1, 0].map(whole_rational), vector![0, 1].map(whole_rational)];
+    let [first, second] = gains.clone().map(|gain| (Matrix2::identity() - gain * &h) * &motion);
+    assert_eq!(&second * &first, matrix![0, 1; 0, 0].map(whole_rational));
+    assert_eq!(&first * &second, matrix![0, 0; -1, 0].map(whole_rational));
+    let start = vector![2, -3].map(whole_rational);
+    let seen = [5, 7].map(whole_rational);
+    // The filter itself, step by step.
+    let step = |state: SVector<Rational, 2>, k: usize| {
+        let predicted = &motion * state;
+        let innovation = Vector1::new(seen[k].clone()) - &h * &predicted;
+        update::updated_mean(&predicted, &gains[k], &innovation)
+    };
+    let filtered = step(step(start.clone(), 0), 1);
+    let inputs = |k: usize| &gains[k] * seen[k].clone();
+    let corrected = &second * &first * &start + &second * inputs(0) + inputs(1);
+    let printed = &first * &second * &start + &second * inputs(0) + inputs(1);
+    assert_eq!(filtered, corrected);
+    assert_ne!(filtered, printed);
+}
+
+/// derbez2000, c = Σᵢ Λʲ c̄ⱼ: the index of the sum is not that of its terms.
+#[test]
+fn printed_index_of_the_normaliser_leaves_probabilities_that_do_not_sum_to_one() {
+    let (likelihoods, predicted) = ([1, 3].map(whole_rational), [Rational::new(1, 2), Rational::new(1, 2)]);
+    let corrected = evidence(&likelihoods, &predicted);
+    assert_eq!(corrected, whole_rational(2));
+    let sum = |normaliser: &Rational| {
+        let of_mode = |j: usize| mode_probability(&likelihoods[j], &predicted[j], normaliser);
+        of_mode(0) + of_mode(1)
+    };
+    assert_eq!(sum(&corrected), whole_rational(1));
+    for j in 0..2 {
+        // Two times the term with the index j, whichever that is.
+        let printed = whole_rational(2) * likelihoods[j].clone() * predicted[j].clone();
+        assert_ne!(sum(&printed), whole_rational(1), "j = {j}");
+    }
+}
+
+/// derbez2000, the likelihood: √(2π|S|) has one 2π, whatever the dimension.
+#[test]
+fn printed_likelihood_is_a_density_for_scalar_measurements_only() {
+    // It is the form of zhu2016 (57).
+    let scalar = Matrix1::new(3.0);
+    let plane = matrix![2.0, 0.0; 1.0, 0.5];
+    let of_scalar = integral(&scalar, |residual| {
+        log_density_57(residual, &ldl(&(scalar * scalar.transpose())))
+    });
+    let of_plane = integral(&plane, |residual| {
+        log_density_57(residual, &ldl(&(plane * plane.transpose())))
+    });
+    assert_relative(of_scalar, 1.0);
+    assert_relative(of_plane, (2.0 * PI).sqrt());
+    let corrected = integral(&plane, |residual| {
+        log_density(residual, &ldl(&(plane * plane.transpose())))
+    });
+    assert_relative(corrected, 1.0);
+}
+
+/// derbez2000, the Proposition: "one may use a non zero noise Q for the gain calculations". One must.
+#[test]
+fn without_noise_in_the_gain_calculation_the_mismatched_error_is_not_bounded() {
+    let h = position_matrix::<f64>();
+    let motion = embedded_constant_velocity(&1.0);
+    // The mean error after so many steps of a constant velocity filter that assumes `noise`, on a target with unit acceleration.
+    let error_after = |steps: usize, noise: f64| {
+        let noise = response_noise(&embedded_velocity_response(&1.0), &noise);
+        let (mut covariance, mut error) = (Matrix3::identity(), Vector3::<f64>::zeros());
+        for _ in 0..steps {
+            let predicted = kalman::predicted_covariance(&motion, &covariance, &noise);
+            let s = kalman::innovation_covariance(&h, &predicted, &Matrix1::identity());
+            let gain = update::gain(&kalman::cross_covariance(&predicted, &h), &ldl(&s));
+            covariance = update::updated_covariance(&predicted, &gain, &s);
+            error = (Matrix3::identity() - gain * h) * (motion * error + acceleration_response(&1.0));
+        }
+        error[0]
+    };
+    let settled = error_after(400, 1.0);
+    // It has settled: the error decays by a factor of about θ = 1 − √α < 0.6 a step, and 200 steps of that are below a rounding.
+    assert_relative(error_after(200, 1.0), settled);
+    // Without noise it grows like the square of time: four times as large after twice the time, in the limit.
+    let growth = error_after(800, 0.0) / error_after(400, 0.0);
+    assert!((growth - 4.0).abs() < 0.1, "{growth}");
+
+    // (7) has no solution then: the gain tends to zero, A to F, and I − F has no inverse.
+    let rest = Matrix3::identity() - embedded_constant_velocity(&whole_rational(1));
+    assert_eq!(rest.column(0).into_owned(), Vector3::zeros());
+}
+
+/// derbez2000, step 3 of the algorithm: the spread of two models.
+#[test]
+fn printed_spread_of_two_models_is_not_the_mixed_covariance() {
+    let estimate = |mean: i64, variance: i64| Gaussian {
+        mean: Vector1::new(whole_rational(mean)),
+        covariance: Matrix1::new(whole_rational(variance)),
+    };
+    // The truth is 0, which the second model knows exactly.
+    let (components, truth) = ([estimate(4, 2), estimate(0, 1)], whole_rational(0));
+    let weights = [Rational::new(3, 4), Rational::new(1, 4)];
+    let mean = mixture_mean(&weights, &components);
+    let mixed = mixture_covariance(&weights, &components, &mean)[0].clone();
+    // By hand: ¾·2 + ¼·1, and a spread of ¾·1 + ¼·9.
+    assert_eq!(mixed, Rational::new(7, 4) + whole_rational(3));
+    let square = |value: Rational| value.clone() * value;
+    let difference = square(components[0].mean[0].clone() - components[1].mean[0].clone());
+    let error = |l: usize| square(components[l].mean[0].clone() - truth.clone());
+    let sum = |spread: &dyn Fn(usize, usize) -> Rational| {
+        let of = |i: usize| weights[i].clone() * (components[i].covariance[0].clone() + spread(i, 1 - i));
+        of(0) + of(1)
+    };
+    assert_eq!(sum(&|_, l| square(weights[l].clone()) * difference.clone()), mixed);
+    // The error of the other model for the difference of both, even with the right weight.
+    assert_ne!(sum(&|_, l| square(weights[l].clone()) * error(l)), mixed);
+    // And with the printed weight: μ^{il} of the chain p = 0.95 and even odds is 0.05, whichever of the two is meant.
+    let printed = sum(&|_, l| square(Rational::new(1, 20)) * error(l));
+    assert_ne!(printed, mixed);
+}
+
+/// derbez2000, section 3.1: (x̂ⁱ − x̂⁰ʲ)² is not bounded by Σ (μ^{ij})² P^{e,j}, for a symmetric chain either.
+#[test]
+fn printed_bound_of_the_moment_matching_term_is_exceeded() {
+    // Even odds, p = 0.95; model 1 is off by 1, model 2 right: P^{e,1} = 1 and P^{e,2} = 0.
+    let mixing = |previous: usize, current: usize| mixing_of(&Rational::new(1, 2), previous, current);
+    let weights = [mixing(0, 1), mixing(1, 1)];
+    let estimate = |mean: i64| Gaussian {
+        mean: Vector1::new(whole_rational(mean)),
+        covariance: Matrix1::new(whole_rational(0)),
+    };
+    let components = [estimate(1), estimate(0)];
+    let mean = mixture_mean(&weights, &components);
+    let spread = mixture_covariance(&weights, &components, &mean)[0].clone();
+    assert_eq!(spread, Rational::new(475, 10_000));
+    assert_eq!(spread, weights[0].clone() * weights[1].clone());
+    // For i = 1 the bound is (μ^{12})² P^{e,2} = 0, for i = 2 it is (μ^{21})² P^{e,1}.
+    let printed = weights[1].clone() * mixing(1, 0).pow(2);
+    assert_eq!(printed, Rational::new(2375, 1_000_000));
+    assert!(spread > printed);
+    // The corrected bound holds for all odds.
+    for hundredths in 0..=100 {
+        let of_first = Rational::new(hundredths, 100);
+        let product = mixing_of(&of_first, 0, 1) * mixing_of(&of_first, 1, 1);
+        assert!(product <= Rational::new(1, 4));
+    }
+}
+
+/// derbez2000, section 3.1: ε = (μ^{1|2})² is (1 − a)² at even odds, and not elsewhere.
+#[test]
+fn printed_size_of_the_mixing_probability_holds_at_even_odds_only() {
+    let printed = Rational::new(1, 20).pow(2);
+    for hundredths in 0..=100 {
+        let epsilon = mixing_of(&Rational::new(hundredths, 100), 0, 1).pow(2);
+        assert_eq!(epsilon == printed, hundredths == 50, "{hundredths}");
+    }
+    // The numbers of the erratum.
+    assert_eq!(mixing_of(&Rational::new(95, 100), 0, 1), Rational::new(1, 2));
+    assert_eq!(mixing_of(&Rational::new(1, 1), 0, 1), Rational::new(1, 1));
+}
+
+/// derbez2000, step 6 of the algorithm: Σ μⁱ P^{e,i} is not the error of the combined estimate.
+#[test]
+fn printed_blend_of_the_errors_is_only_an_upper_bound() {
+    let square = |error: &SVector<Rational, 2>| error * error.transpose();
+    for (errors, of_first) in [
+        ([vector![1, 0], vector![-1, 0]], Rational::new(1, 2)),
+        ([vector![3, -2], vector![1, 5]], Rational::new(1, 5)),
+    ] {
+        let errors = errors.map(|error| error.map(whole_rational));
+        let weights = [of_first.clone(), whole_rational(1) - of_first];
+        let combined = &errors[0] * weights[0].clone() + &errors[1] * weights[1].clone();
+        let printed = square(&errors[0]) * weights[0].clone() + square(&errors[1]) * weights[1].clone();
+        let excess = printed - square(&combined);
+        let difference = &errors[0] - &errors[1];
+        assert_eq!(excess, square(&difference) * (weights[0].clone() * weights[1].clone()));
+        assert_ne!(excess, Matrix2::zeros());
+    }
+}
+
+/// derbez2000, remark 1: the averages of (I − K H) F do not decide whether the filter is stable, even with frozen probabilities.
+#[test]
+fn frozen_probabilities_are_not_judged_by_the_averaged_matrices() {
+    let half = |entries: [[i64; 2]; 2]| Matrix2::from_fn(|i, j| Rational::new(entries[i][j], 2));
+    // Two pairs of stable matrices with μ^{1|1} and μ^{2|2}.
+    let unstable = Frozen {
+        matrices: [half([[-1, -4], [0, 0]]), half([[2, 2], [-3, -2]])],
+        stays: [Rational::new(1, 2), Rational::new(1, 4)],
+    };
+    let stable = Frozen {
+        matrices: [half([[3, -1], [4, -1]]), half([[-3, -3], [2, 1]])],
+        stays: [Rational::new(3, 4), Rational::new(9, 10)],
+    };
+    for pair in [&unstable, &stable] {
+        assert!(pair.matrices.iter().all(is_stable), "each is stable");
+    }
+    // The averages are stable and the filter is not.
+    assert!(unstable.averages().iter().all(is_stable));
+    assert!(!is_stable(&unstable.filter()));
+    // The filter is stable and an average is not.
+    assert!(!stable.averages().iter().all(is_stable));
+    assert!(is_stable(&stable.filter()));
+}
+
+/// Two modes' matrices with frozen mixing probabilities.
+struct Frozen {
+    matrices: [Matrix2<Rational>; 2],
+    /// μ^{1|1} and μ^{2|2}.
+    stays: [Rational; 2],
+}
+
+impl Frozen {
+    /// μ^{i|j}.
+    fn mixing(&self, i: usize, j: usize) -> Rational {
+        if i == j {
+            self.stays[j].clone()
+        } else {
+            whole_rational(1) - self.stays[j].clone()
+        }
+    }
+
+    /// What the paper looks at: Σⱼ μ^{j|i} Aʲ.
+    fn averages(&self) -> [Matrix2<Rational>; 2] {
+        [0, 1].map(|i| &self.matrices[0] * self.mixing(0, i) + &self.matrices[1] * self.mixing(1, i))
+    }
+
+    /// What the filter does to both estimates: block (j, i) is μ^{i|j} Aʲ.
+    fn filter(&self) -> Matrix4<Rational> {
+        Matrix4::from_fn(|row, column| {
+            let (j, i) = (row / 2, column / 2);
+            self.matrices[j][(row % 2, column % 2)].clone() * self.mixing(i, j)
+        })
+    }
+}
+
+/// Whether the spectral radius is below one: certainly so when a power has a row sum norm below one, and certainly not when the trace of
+/// a power is above the dimension. The power 256, by squaring, in doubles: a rounding is far from either.
+fn is_stable<const N: usize>(matrix: &SMatrix<Rational, N, N>) -> bool {
+    let mut power = matrix.map(|entry| entry.to_f64());
+    for _ in 0..8 {
+        power *= power;
+    }
+    let norm = power
+        .row_iter()
+        .map(|row| row.iter().map(|entry| entry.abs()).sum::<f64>())
+        .fold(0.0, f64::max);
+    let trace = power.trace().abs();
+    assert!(norm < 0.5 || trace > 2.0 * N as f64, "undecided: {norm}, {trace}");
+    norm < 0.5
+}
+
+/// μ^{i|j} of two models with p = 0.95 on the diagonal, by the probability of the first.
+fn mixing_of(of_first: &Rational, previous: usize, current: usize) -> Rational {
+    let transition = [[19, 1], [1, 19]].map(|row| row.map(|entry| Rational::new(entry, 20)).to_vec());
+    let probabilities = [of_first.clone(), whole_rational(1) - of_first.clone()];
+    let predicted = predicted_mode_probability(&transition, &probabilities, current);
+    mixing_probability(&transition, &probabilities, &predicted, previous, current)
 }
 
 // Helpers

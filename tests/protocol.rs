@@ -841,6 +841,28 @@ fn the_verdict_can_be_selected_and_read_by_machines() {
     }
 }
 
+/// Fixed gains are inputs, and shown all the same: the gain of another mode is seen in its own equation.
+#[test]
+fn the_fixed_gain_of_another_mode_is_named_with_its_equation() {
+    let own = env!("CARGO_BIN_EXE_immaculate");
+    let plant = ["--", own, "answer", "--plant", "gain-of-the-next-mode"];
+    let output = run(&[&["check", "--case", "step.fixed-gain"], &plant[..]].concat());
+    assert_eq!(output.status.code(), Some(1));
+    let text = String::from_utf8(output.stdout).unwrap();
+    for words in [
+        "FAULT  gain  —  derbez2000, section 3, given",
+        "step.fixed-gain, step 1, modes[0].gain[1][0] is 0.181, and should be 0.062",
+        "gain-of-the-next-mode; mistake",
+        "62 of 62 values",
+    ] {
+        assert!(text.contains(words), "{words} in\n{text}");
+    }
+    assert!(
+        !text.contains("Never shown"),
+        "what does not exist is not hidden:\n{text}"
+    );
+}
+
 #[test]
 fn two_mistakes_at_once_are_named() {
     let own = env!("CARGO_BIN_EXE_immaculate");

@@ -27,6 +27,33 @@ fn liu2017_at_its_defaults() {
 }
 
 #[test]
+fn derbez2000_at_its_defaults() {
+    // Scenario 2: acceleration to 20 s, straight to 40 s, a turn to 100 s, straight to 140 s.
+    let manoeuvres = experiment(Paper::Derbez2000, &[2, 10, 20, 22, 30, 40, 42, 60, 100, 102, 140]);
+    // Scenario 1, of which the paper publishes no figures: past the radar at 120 s.
+    let acceleration = reproduce(Paper::Derbez2000, &Choices::of("scenario", "acceleration"));
+    let mut text = format!("{manoeuvres}\nscenario 1, errors\n");
+    for filter in &acceleration.filters {
+        let _ = write!(text, "{:<12}", filter.name);
+        for quantity in [Quantity::X, Quantity::Y, Quantity::Position] {
+            let error = acceleration.error(&filter.name, quantity).unwrap();
+            let _ = write!(
+                text,
+                " {:>16}",
+                format!("{} ± {}", figure(error.value), rough(error.standard_error))
+            );
+        }
+        text.push('\n');
+    }
+    insta::assert_snapshot!(text);
+}
+
+#[test]
+fn derbez2000_under_each_open_choice() {
+    insta::assert_snapshot!(open_choices(Paper::Derbez2000));
+}
+
+#[test]
 fn zhu2016_under_each_open_choice() {
     insta::assert_snapshot!(open_choices(Paper::Zhu2016));
 }
@@ -156,7 +183,11 @@ fn history(reproduction: &Reproduction, filter: &Performance, seconds: &[u32]) -
 /// The position errors under each alternative, the other choices at their defaults.
 fn open_choices(paper: Paper) -> String {
     let mut choices = vec![Choices::default()];
-    choices.extend(paper.specification().single_alternatives());
+    choices.extend(paper.open_choices(&choices[0]));
+    for other in &paper.simulations(&choices[0])[1..] {
+        choices.push(other.clone());
+        choices.extend(paper.open_choices(other));
+    }
     let names: Vec<String> = reproduce(paper, &choices[0])
         .filters
         .into_iter()

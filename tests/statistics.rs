@@ -410,13 +410,14 @@ fn streams_seeds_and_neighbours_are_uncorrelated() {
 #[test]
 fn runs_do_not_depend_on_the_number_of_threads() {
     for paper in Paper::ALL {
-        let scenario = scenario_of(paper);
+        let simulation = paper.simulation(&Choices::default()).unwrap();
         let on_threads = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| without_time(run(&scenario, 4, 1, &|| ())))
+            pool.install(|| without_time(run(&*simulation, 4, 1, &|| ())))
         };
+        // As text: a filter without covariances has a NEES that is not a number, which equals nothing.
         let one = on_threads(1);
-        assert_eq!(one, on_threads(2));
+        assert_eq!(format!("{one:?}"), format!("{:?}", on_threads(2)));
         assert_ne!(one[0], one[1], "runs differ from each other");
     }
 }
@@ -438,7 +439,7 @@ fn a_run_is_the_same_in_a_shorter_experiment() {
 
 #[test]
 fn paired_filters_see_the_same_draws_and_unpaired_ones_different_draws() {
-    for paper in Paper::ALL {
+    for paper in [Paper::Zhu2016, Paper::Liu2017] {
         let twins = |pairing: &str| {
             let mut scenario = paper.scenario(&Choices::of("pairing", pairing)).unwrap();
             // Three copies of one filter: only their draws can tell them apart.

@@ -8,7 +8,7 @@ use immaculate::model::Measurement;
 use immaculate::model::motion::acceleration_input;
 use immaculate::paper::scenario::{Motion, Scenario};
 use immaculate::paper::specification::{Choices, Equation, Specification};
-use immaculate::paper::{Effort, Paper, liu2017, zhu2016};
+use immaculate::paper::{Effort, Paper, derbez2000, liu2017, zhu2016};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
@@ -263,11 +263,16 @@ fn every_alternative_changes_the_scenario() {
         for parameter in &paper.specification().parameters {
             let mut texts = BTreeMap::new();
             for alternative in &parameter.alternatives {
-                let choices = Choices::of(&parameter.name, &alternative.name);
+                // In the scenario that has the parameter, where a paper has several.
+                let simulation = match &parameter.scenario {
+                    Some(scenario) => Choices::of("scenario", scenario),
+                    None => Choices::default(),
+                };
+                let choices = simulation.clone().with(&parameter.name, &alternative.name);
                 let text = debug_text(paper, &choices);
                 if alternative.name == parameter.default {
                     // Otherwise a difference would mean nothing.
-                    assert_eq!(text, debug_text(paper, &Choices::default()));
+                    assert!(text == debug_text(paper, &simulation), "{}", choices.describe());
                 }
                 if let Some(other) = texts.insert(text, &alternative.name) {
                     panic!(
@@ -360,16 +365,82 @@ fn the_constants_of_liu2017_are_the_printed_ones() {
 }
 
 #[test]
+fn the_constants_of_derbez2000_are_the_printed_ones() {
+    let printed = printed_table("derbez2000");
+    let of_choices = |choices: &Choices| derbez2000::scenario(choices).unwrap();
+    let manoeuvres = of_choices(&Choices::default());
+    let acceleration = of_choices(&Choices::of("scenario", "acceleration"));
+    let imm = &manoeuvres.contestants[0];
+    let mut code = toml::Table::new();
+    let mut put = |key: &str, value: toml::Value| {
+        code.insert(key.to_owned(), value);
+    };
+    let modes = imm.problems[0].modes.iter().map(|mode| mode.name.clone());
+    put("models", modes.collect::<Vec<_>>().into());
+    let filters = manoeuvres.contestants.iter().map(|filter| filter.name.clone());
+    put("filters", filters.collect::<Vec<_>>().into());
+    put("runs", integer(manoeuvres.runs));
+    // The truth itself: its acceleration, and the step at which it is nearest to the radar.
+    let places = &acceleration.path.places;
+    let distance = |k: usize| places[k][0][0].hypot(places[k][1][0]);
+    let nearest = (0..places.len())
+        .min_by(|a, b| distance(*a).total_cmp(&distance(*b)))
+        .unwrap();
+    assert!(
+        places
+            .iter()
+            .all(|place| place[0][2].to_bits() == derbez2000::ACCELERATION.to_bits())
+    );
+    put("acceleration", derbez2000::ACCELERATION.into());
+    put("scan-time", acceleration.setup.interval.into());
+    put("closest-approach", distance(nearest).into());
+    put("closest-point", integer(nearest + 1));
+    put("points", integer(places.len()));
+    put("phases", derbez2000::PHASES.map(integer).to_vec().into());
+    assert_eq!(manoeuvres.path.places.len(), derbez2000::PHASES.iter().sum::<usize>());
+    let [range, bearing] = manoeuvres.variances;
+    put("range-variance", range.into());
+    put("bearing-variance", bearing.into());
+    put("initial-probabilities", imm.initial_probabilities.clone().into());
+    put("initial-covariance-diagonal", vec![imm.initial_variance; 3].into());
+    let counts = |counts: [u32; 3]| -> toml::Value { counts.map(i64::from).to_vec().into() };
+    put("operations-section-4", counts(derbez2000::OPERATIONS_OF_SECTION_4));
+    put("operations-section-4-1", counts(derbez2000::OPERATIONS_OF_SECTION_4_1));
+    put("transition", rows(imm.problems[0].transition.iter().cloned()));
+    assert_eq!(code, printed);
+}
+
+#[test]
+fn parameters_of_one_scenario_change_that_one() {
+    let specification = Paper::Derbez2000.specification();
+    let text = |choices: &Choices| debug_text(Paper::Derbez2000, choices);
+    for scenario in ["manoeuvres", "acceleration"] {
+        let unchanged = text(&Choices::of("scenario", scenario));
+        for parameter in specification
+            .parameters
+            .iter()
+            .filter(|parameter| parameter.name != "scenario")
+        {
+            let belongs = parameter.scenario.as_deref().is_none_or(|of| of == scenario);
+            for alternative in parameter.alternatives.iter().filter(|a| a.name != parameter.default) {
+                let choices = Choices::of("scenario", scenario).with(&parameter.name, &alternative.name);
+                assert_eq!(text(&choices) != unchanged, belongs, "{}", choices.describe());
+            }
+        }
+    }
+}
+
+#[test]
 fn published_tables_are_rectangular_and_name_filters_that_are_run() {
     for paper in Paper::ALL {
-        let scenario = default_scenario(paper);
+        let filters = paper.simulation(&Choices::default()).unwrap().filters();
         for table in &paper.specification().tables {
             for row in &table.rows {
                 assert_eq!(row.values.len(), table.columns.len(), "{}", row.name);
             }
             for column in &table.columns {
                 let is_run = |name: &str| name.starts_with(column.as_str());
-                assert!(scenario.contestants.iter().any(|c| is_run(&c.name)), "{column}");
+                assert!(filters.iter().any(|filter| is_run(&filter.name)), "{column}");
             }
         }
     }
@@ -719,11 +790,11 @@ fn default_scenario(paper: Paper) -> Scenario {
     paper.scenario(&Choices::default()).unwrap()
 }
 
-/// Everything in a scenario but the names of its choices.
+/// Everything in a simulation but the names of its choices.
 fn debug_text(paper: Paper, choices: &Choices) -> String {
-    let mut scenario = paper.scenario(choices).unwrap();
-    scenario.choices = Choices::default();
-    format!("{scenario:?}")
+    let simulation = paper.simulation(choices).unwrap();
+    let names = format!("{:?}", simulation.choices());
+    format!("{simulation:?}").replace(&names, "")
 }
 
 /// The table `[printed]` of a paper's scenario.

@@ -74,7 +74,7 @@ struct Select {
     /// Only cases with this flag; may be given again
     #[arg(long = "flag", value_name = "FLAG")]
     flags: Vec<String>,
-    /// Only cases of this filter: kalman, unscented, or a rule; may be given again
+    /// Only cases of this filter: kalman, unscented, a rule, fixed-gain or fixed-gain-unmixed; may be given again
     #[arg(long = "kind", value_name = "KIND")]
     kinds: Vec<String>,
     /// Print JSON instead of text
@@ -161,7 +161,7 @@ fn copy(folder: &Path, select: &Select) -> Result<Done, Refusal> {
         if let Expected::Trace(trace) = &case.expected {
             write_file(
                 &folder.join(format!("{id}.trace.csv")),
-                &long_csv(id, trace, case.trace_text),
+                &long_csv(&case.problem, trace, case.trace_text),
             )?;
             files += 1;
         }

@@ -32,7 +32,7 @@ pub struct Check {
     /// Only cases with this flag; may be given again (`immaculate cases list` knows the flags)
     #[arg(long = "flag", value_name = "FLAG")]
     flags: Vec<String>,
-    /// Only cases of this filter: kalman, unscented, or a rule; may be given again
+    /// Only cases of this filter: kalman, unscented, a rule, fixed-gain or fixed-gain-unmixed; may be given again
     #[arg(long = "kind", value_name = "KIND")]
     kinds: Vec<String>,
     /// The time that the program has for each case, in seconds

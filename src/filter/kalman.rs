@@ -6,14 +6,14 @@ use crate::matrix::mirrored;
 use crate::number::Field;
 use nalgebra::{SMatrix, SVector};
 
-/// Predicted mean, x̂⁻ = F x̂.
+/// Predicted mean, x̂⁻ = F x̂ — derbez2000 (2).
 ///
 /// Source: Kalman 1960; liu2017 (1) without noise.
 pub fn predicted_mean<T: Field, const N: usize>(transition: &SMatrix<T, N, N>, mean: &SVector<T, N>) -> SVector<T, N> {
     transition * mean
 }
 
-/// Predicted covariance, P⁻ = F P Fᵀ + Q, with its lower triangle [`mirrored`].
+/// Predicted covariance, P⁻ = F P Fᵀ + Q, with its lower triangle [`mirrored`] — derbez2000 (2).
 ///
 /// Source: Kalman 1960.
 ///
@@ -36,7 +36,7 @@ pub fn cross_covariance<T: Field, const N: usize, const M: usize>(
     covariance * h.transpose()
 }
 
-/// Innovation covariance, S = H P⁻ Hᵀ + R.
+/// Innovation covariance, S = H P⁻ Hᵀ + R — derbez2000 (4).
 ///
 /// Source: Kalman 1960.
 pub fn innovation_covariance<T: Field, const N: usize, const M: usize>(

@@ -1,6 +1,6 @@
 //! One filter: prediction and update of a single Gaussian.
 //!
-//! After this folder the reader knows the two kinds of filter that run inside the interacting multiple model filter, and that they
+//! After this folder the reader knows the kinds of filter that run inside the interacting multiple model filter, and that the first two
 //! share their last three equations:
 //!
 //! ```text
@@ -12,9 +12,11 @@
 //! - [`kalman`]: the linear equations;
 //! - [`cubature`]: the same moments by points and weights, in the centred form of liu2017;
 //! - [`raw`]: the moments about the origin that zhu2016 prints, equal in exact arithmetic and poorer in floating point;
-//! - [`update`]: gain, updated mean, updated covariance, for both.
+//! - [`update`]: gain, updated mean, updated covariance, for both;
+//! - [`fixed_gain`]: the linear equations of the mean alone, with gain and innovation covariance that are given.
 
 pub mod cubature;
+pub mod fixed_gain;
 pub mod kalman;
 pub mod raw;
 pub mod update;

@@ -6,7 +6,7 @@ use crate::matrix::{Ldl, mirrored, solve};
 use crate::number::Field;
 use nalgebra::{SMatrix, SVector};
 
-/// Gain — zhu2016 (51), liu2017 (20).
+/// Gain — derbez2000 (2), zhu2016 (51), liu2017 (20).
 ///
 /// ```text
 /// W = C S⁻¹
@@ -28,7 +28,7 @@ pub fn gain<T: Field, const N: usize, const M: usize>(
     solve(innovation_covariance, &cross_covariance.transpose()).transpose()
 }
 
-/// Updated mean — zhu2016 (52), liu2017 (20).
+/// Updated mean — derbez2000 (2), (8), zhu2016 (52), liu2017 (20).
 ///
 /// ```text
 /// x̂ = x̂⁻ + W ν,   ν = z − ẑ
@@ -40,9 +40,12 @@ pub fn gain<T: Field, const N: usize, const M: usize>(
 /// | W     | `gain`       | N × M | [`gain`]                       |
 /// | z − ẑ | `innovation` | M     | the residual, angles wrapped   |
 ///
-/// Why: the conditional mean of a joint Gaussian.
+/// Why: the conditional mean of a joint Gaussian. With x̂⁻ = F x̂ and ẑ = H x̂⁻ it is x̂ₙ = Aₙ x̂ₙ₋₁ + Kₙ yₙ, Aₙ = (I − Kₙ H) F, and undone
+/// to the start x̂ₙ = Aₙ⋯A₁ x̂₀ + Σⱼ Aₙ⋯A₍j+1₎ Kⱼ yⱼ, which is derbez2000 (8).
 ///
-/// Evidence: `the_kalman_update_is_conditioning_of_a_gaussian` (symbolic).
+/// Errata: derbez2000 (8) has the product from the first matrix to the last.
+///
+/// Evidence: `the_kalman_update_is_conditioning_of_a_gaussian` (symbolic), `printed_order_of_the_product_is_not_the_recursion` (exact).
 pub fn updated_mean<T: Field, const N: usize, const M: usize>(
     mean: &SVector<T, N>,
     gain: &SMatrix<T, N, M>,
@@ -51,7 +54,7 @@ pub fn updated_mean<T: Field, const N: usize, const M: usize>(
     mean + gain * innovation
 }
 
-/// Updated covariance — zhu2016 (53), liu2017 (20).
+/// Updated covariance — derbez2000 (2), zhu2016 (53), liu2017 (20).
 ///
 /// ```text
 /// P = P⁻ − W S Wᵀ
@@ -64,9 +67,12 @@ pub fn updated_mean<T: Field, const N: usize, const M: usize>(
 /// | P_zz  | `innovation_covariance` | M × M | innovation covariance  |
 ///
 /// Why: the conditional covariance of a joint Gaussian. Its lower triangle is kept and [`mirrored`]: rounding must not let the two
-/// triangles part.
+/// triangles part. With W = P⁻HᵀS⁻¹ it is the (I − WH)P⁻ of derbez2000.
 ///
-/// Evidence: `the_kalman_update_is_conditioning_of_a_gaussian` (symbolic).
+/// Errata: derbez2000 (2) prints (I − WH)P⁰ with the mixed covariance, which has seen neither the motion nor its noise.
+///
+/// Evidence: `the_kalman_update_is_conditioning_of_a_gaussian` (symbolic),
+/// `printed_update_from_the_mixed_covariance_is_not_conditioning` (exact).
 pub fn updated_covariance<T: Field, const N: usize, const M: usize>(
     covariance: &SMatrix<T, N, N>,
     gain: &SMatrix<T, N, M>,

@@ -81,6 +81,7 @@ pub enum Cause {
 ///     measurement: Measurement::Linear(matrix![1.0]),
 ///     measurement_noise: matrix![2.0],
 ///     rule: None,
+///     fixed_gains: None,
 /// };
 /// let initial = Initial {
 ///     modes: vec![Gaussian { mean: vector![0.0], covariance: matrix![1.0] }],
@@ -115,6 +116,11 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
                 given: problem.rule.is_some(),
             });
         }
+        if equations.keeps_covariances == problem.fixed_gains.is_some() {
+            return Err(InvalidProblem::FixedGains {
+                given: problem.fixed_gains.is_some(),
+            });
+        }
         if !equations.draws_points && !matches!(problem.measurement, Measurement::Linear(_)) {
             return Err(InvalidProblem::NotLinear);
         }
@@ -128,7 +134,11 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
         now.updated.clone_from(&initial.modes);
         now.mode_probabilities.clone_from(&initial.mode_probabilities);
         now.combined.mean = (equations.combined_mean)(&problem, &now, &now);
-        now.combined.covariance = (equations.combined_covariance)(&problem, &now, &now);
+        if equations.keeps_covariances {
+            now.combined.covariance = (equations.combined_covariance)(&problem, &now, &now);
+        } else {
+            now.forget_covariances();
+        }
         Self {
             previous: now.clone(),
             problem,
@@ -207,7 +217,8 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
         }
         self.combine(observer);
         let combined = &self.now.combined;
-        if all_finite(&combined.mean) && all_finite(&combined.covariance) {
+        let is_finite = |covariance| !self.equations.keeps_covariances || all_finite(covariance);
+        if all_finite(&combined.mean) && is_finite(&combined.covariance) {
             return Ok(());
         }
         Err(Failure {
@@ -233,8 +244,10 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
             observer.computed(Quantity::MixingProbabilities, j, now);
             now.mixed[j].mean = (e.mixed_mean)(problem, previous, now, j);
             observer.computed(Quantity::MixedMean, j, now);
-            now.mixed[j].covariance = (e.mixed_covariance)(problem, previous, now, j);
-            observer.computed(Quantity::MixedCovariance, j, now);
+            if e.keeps_covariances {
+                now.mixed[j].covariance = (e.mixed_covariance)(problem, previous, now, j);
+                observer.computed(Quantity::MixedCovariance, j, now);
+            }
         }
     }
 
@@ -251,8 +264,10 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
         }
         now.predicted[j].mean = (e.predicted_mean)(problem, previous, now, j);
         observer.computed(Quantity::PredictedMean, j, now);
-        now.predicted[j].covariance = (e.predicted_covariance)(problem, previous, now, j);
-        observer.computed(Quantity::PredictedCovariance, j, now);
+        if e.keeps_covariances {
+            now.predicted[j].covariance = (e.predicted_covariance)(problem, previous, now, j);
+            observer.computed(Quantity::PredictedCovariance, j, now);
+        }
         Ok(())
     }
 
@@ -273,15 +288,19 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
         observer.computed(Quantity::Innovation, j, now);
         now.innovation_covariances[j] = (e.innovation_covariance)(problem, previous, now, j);
         observer.computed(Quantity::InnovationCovariance, j, now);
-        now.cross_covariances[j] = (e.cross_covariance)(problem, previous, now, j);
-        observer.computed(Quantity::CrossCovariance, j, now);
+        if e.keeps_covariances {
+            now.cross_covariances[j] = (e.cross_covariance)(problem, previous, now, j);
+            observer.computed(Quantity::CrossCovariance, j, now);
+        }
         now.gains[j] = (e.gain)(problem, previous, now, j)
             .map_err(|pivot| failure(problem, now, j, "zhu2016 (51)", "innovation covariance", pivot))?;
         observer.computed(Quantity::Gain, j, now);
         now.updated[j].mean = (e.updated_mean)(problem, previous, now, j);
         observer.computed(Quantity::UpdatedMean, j, now);
-        now.updated[j].covariance = (e.updated_covariance)(problem, previous, now, j);
-        observer.computed(Quantity::UpdatedCovariance, j, now);
+        if e.keeps_covariances {
+            now.updated[j].covariance = (e.updated_covariance)(problem, previous, now, j);
+            observer.computed(Quantity::UpdatedCovariance, j, now);
+        }
         now.log_likelihoods[j] = (e.log_likelihood)(problem, previous, now, j);
         observer.computed(Quantity::LogLikelihood, j, now);
         Ok(())
@@ -317,8 +336,10 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
         for j in 0..problem.modes.len() {
             now.updated[j].mean = (e.undetected_mean)(problem, previous, now, j);
             observer.computed(Quantity::UpdatedMean, j, now);
-            now.updated[j].covariance = (e.undetected_covariance)(problem, previous, now, j);
-            observer.computed(Quantity::UpdatedCovariance, j, now);
+            if e.keeps_covariances {
+                now.updated[j].covariance = (e.undetected_covariance)(problem, previous, now, j);
+                observer.computed(Quantity::UpdatedCovariance, j, now);
+            }
             now.log_likelihoods[j] = (e.undetected_log_likelihood)(problem, previous, now, j);
         }
         for j in 0..problem.modes.len() {
@@ -332,8 +353,10 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
         let (e, problem, previous, now) = self.parts();
         now.combined_prediction.mean = (e.combined_prediction_mean)(problem, previous, now);
         observer.computed(Quantity::CombinedPredictionMean, 0, now);
-        now.combined_prediction.covariance = (e.combined_prediction_covariance)(problem, previous, now);
-        observer.computed(Quantity::CombinedPredictionCovariance, 0, now);
+        if e.keeps_covariances {
+            now.combined_prediction.covariance = (e.combined_prediction_covariance)(problem, previous, now);
+            observer.computed(Quantity::CombinedPredictionCovariance, 0, now);
+        }
     }
 
     /// The estimate after the measurement, for output.
@@ -341,8 +364,10 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
         let (e, problem, previous, now) = self.parts();
         now.combined.mean = (e.combined_mean)(problem, previous, now);
         observer.computed(Quantity::CombinedMean, 0, now);
-        now.combined.covariance = (e.combined_covariance)(problem, previous, now);
-        observer.computed(Quantity::CombinedCovariance, 0, now);
+        if e.keeps_covariances {
+            now.combined.covariance = (e.combined_covariance)(problem, previous, now);
+            observer.computed(Quantity::CombinedCovariance, 0, now);
+        }
     }
 
     /// What every equation is given.

@@ -2,7 +2,8 @@
 //!
 //! After this file the reader knows, for every field of [`Step`], which equation gives it from which other values. An entry sees
 //! the problem, the step before, the step so far and its mode; the wiring in [`super::cycle`] runs the entries in order.
-//! The filter proper is [`Equations::kalman`] or [`Equations::cubature`]; a *variant* is such a table with some entries exchanged:
+//! The filter proper is [`Equations::kalman`], [`Equations::cubature`] or [`Equations::fixed_gain`]; a *variant* is such a table with some
+//! entries exchanged:
 //!
 //! ```
 //! use immaculate::imm::Equations;
@@ -15,6 +16,7 @@
 
 use super::probability;
 use super::{Problem, Step};
+use crate::filter::fixed_gain::FixedGain;
 use crate::filter::{cubature, kalman, raw, update};
 use crate::gaussian::{log_density, mixture_covariance, mixture_mean};
 use crate::matrix::{NotPositiveDefinite, check_positive_definite, cholesky, ldl};
@@ -40,6 +42,10 @@ pub type Factored<T, const R: usize, const C: usize> = Result<SMatrix<T, R, C>, 
 pub struct Equations<T, const N: usize, const M: usize> {
     /// Whether the filters draw points; the Kalman filter does not.
     pub draws_points: bool,
+    /// Whether the filters carry covariances; those with fixed gains do not, and the wiring skips what does not exist.
+    pub keeps_covariances: bool,
+    /// Whether modes start from mixed estimates; where they do not, each starts from its own.
+    pub mixes: bool,
     /// cⱼ, [`probability::predicted_mode_probability`].
     pub predicted_mode_probability: OfMode<T, N, M, T>,
     /// μᵢ∣ⱼ of current mode j and previous mode i, [`probability::mixing_probability`].
@@ -112,6 +118,8 @@ impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
     pub fn kalman() -> Self {
         Self {
             draws_points: false,
+            keeps_covariances: true,
+            mixes: true,
 
             predicted_mode_probability: |problem, previous, _, j| {
                 let probabilities = &previous.mode_probabilities;
@@ -249,10 +257,58 @@ impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
         }
     }
 
-    /// The table for a problem: filters with points where it has a rule, else Kalman filters.
+    /// Filters with fixed gains that start from mixed estimates.
+    ///
+    /// Source: derbez2000, section 3, not numbered.
+    ///
+    /// ```text
+    /// x̂⁰ʲ = Σᵢ μᵢ∣ⱼ x̂ⁱ     x̂⁻ʲ = Fʲ x̂⁰ʲ     νʲ = z − H x̂⁻ʲ     x̂ʲ = x̂⁻ʲ + Kʲ νʲ     ln Lⱼ = ln N(νʲ; 0, Sʲ)
+    /// ```
+    ///
+    /// Probabilities and the combined mean are those of any interacting multiple model filter; there is no covariance anywhere. Kʲ and Sʲ
+    /// are the problem's, see [`FixedGain`].
+    ///
+    /// Why: with its mixed states this is "the usual IMM algorithm", each of whose filters has the gain that it would end with if it
+    /// were alone. The gain that the mixed covariance would give, which has the spread of the means in it, is another.
+    ///
+    /// Evidence: `identical_modes_with_fixed_gains_are_the_filter_alone` (exact).
+    pub fn fixed_gain() -> Self {
+        Self {
+            keeps_covariances: false,
+            innovation_covariance: |problem, _, _, j| {
+                given(problem, j, |given| given.innovation_covariance.clone()).unwrap_or_else(undecided)
+            },
+            gain: |problem, _, _, j| Ok(given(problem, j, |given| given.gain.clone()).unwrap_or_else(undecided)),
+            ..Self::kalman()
+        }
+    }
+
+    /// Filters with fixed gains that each go on from their own estimate: the same update read as it is printed, without mixed states.
+    ///
+    /// Source: derbez2000, section 3, not numbered.
+    ///
+    /// ```text
+    /// μᵢ∣ⱼ = 1 for i = j and 0 else, so that x̂⁰ʲ = x̂ʲ
+    /// ```
+    ///
+    /// Only the probabilities, which follow the chain, and the combined mean know of the other modes.
+    ///
+    /// Evidence: `unmixed_modes_with_fixed_gains_stand_alone` (exact).
+    pub fn fixed_gain_unmixed() -> Self {
+        Self {
+            mixes: false,
+            mixing_probability: |_, _, _, j, i| if i == j { T::one() } else { T::zero() },
+            ..Self::fixed_gain()
+        }
+    }
+
+    /// The table for a problem: filters with points where it has a rule, with fixed gains (and mixed states) where it has those, else
+    /// Kalman filters.
     pub fn standard(problem: &Problem<T, N, M>) -> Self {
         if problem.rule.is_some() {
             Self::cubature()
+        } else if problem.fixed_gains.is_some() {
+            Self::fixed_gain()
         } else {
             Self::kalman()
         }
@@ -285,6 +341,20 @@ impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
             ..Self::cubature()
         }
     }
+}
+
+/// A part of what is given for mode j in place of covariances; none where nothing is.
+fn given<T, V, const N: usize, const M: usize>(
+    problem: &Problem<T, N, M>,
+    j: usize,
+    part: fn(&FixedGain<T, N, M>) -> V,
+) -> Option<V> {
+    problem.fixed_gains.as_ref()?.get(j).map(part)
+}
+
+/// A matrix that has no answer.
+fn undecided<T: Real, const R: usize, const C: usize>() -> SMatrix<T, R, C> {
+    SMatrix::from_fn(|_, _| T::undecided())
 }
 
 /// The points of the problem's rule; none without one.

@@ -4,7 +4,7 @@
 
 use crate::number::{Field, Real};
 
-/// Predicted mode probability — zhu2016 (54), liu2017 (13).
+/// Predicted mode probability — derbez2000 (3), zhu2016 (54), liu2017 (13).
 ///
 /// ```text
 /// cⱼ = Σᵢ pᵢⱼ μᵢ
@@ -36,7 +36,7 @@ pub fn predicted_mode_probability<T: Field>(transition: &[Vec<T>], mode_probabil
     sum
 }
 
-/// Mixing probability — zhu2016 (54), liu2017 (13).
+/// Mixing probability — derbez2000 (3), zhu2016 (54), liu2017 (13).
 ///
 /// ```text
 /// μᵢ∣ⱼ = pᵢⱼ μᵢ / cⱼ
@@ -54,6 +54,8 @@ pub fn predicted_mode_probability<T: Field>(transition: &[Vec<T>], mode_probabil
 /// A mode that cannot be reached has cⱼ = 0 and no answer. It keeps its own estimate, μᵢ∣ⱼ = 1 for i = j: its probability is
 /// zero, so no value with a positive probability depends on this choice, and it is ready when the chain reaches it.
 ///
+/// Errata: derbez2000 takes μ₁∣₂ for 1 − a, where p₁₂ = p₂₁ = 1 − a (section 3.1); it is that at even odds only, and tends to one with μ₁.
+///
 /// # Examples
 ///
 /// ```
@@ -65,7 +67,8 @@ pub fn predicted_mode_probability<T: Field>(transition: &[Vec<T>], mode_probabil
 /// ```
 ///
 /// Evidence: `mixing_probabilities_sum_to_one_over_the_previous_modes` (symbolic),
-/// `a_mode_that_cannot_be_reached_keeps_its_own_estimate_and_no_weight`.
+/// `a_mode_that_cannot_be_reached_keeps_its_own_estimate_and_no_weight`,
+/// `printed_size_of_the_mixing_probability_holds_at_even_odds_only` (exact).
 pub fn mixing_probability<T: Field>(
     transition: &[Vec<T>],
     mode_probabilities: &[T],
@@ -141,9 +144,11 @@ fn greatest<T: Real>(log_likelihoods: &[T], predicted_mode_probabilities: &[T]) 
 /// Why: law of total probability; C e^m is the likelihood of the measurement under all modes together.
 ///
 /// Errata: zhu2016 (58) sums to "nm" for r (notational). liu2017 (22) prints Lʲ under the sum over i, with which it cancels and the
-/// measurement changes no probability: [`printed::mode_probability_22`](super::printed::mode_probability_22).
+/// measurement changes no probability: [`printed::mode_probability_22`](super::printed::mode_probability_22). derbez2000 (not numbered)
+/// sums terms with the index j over i, which is a multiple of one of them.
 ///
-/// Evidence: `printed_normaliser_makes_the_likelihood_cancel`.
+/// Evidence: `printed_normaliser_makes_the_likelihood_cancel`,
+/// `printed_index_of_the_normaliser_leaves_probabilities_that_do_not_sum_to_one` (exact).
 pub fn evidence<T: Field>(likelihoods: &[T], predicted_mode_probabilities: &[T]) -> T {
     let mut sum = T::zero();
     for (likelihood, probability) in likelihoods.iter().zip(predicted_mode_probabilities) {

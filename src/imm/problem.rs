@@ -3,6 +3,7 @@
 //! After this file the reader knows the inputs of the cycle and every way in which they can be wrong. Nothing is repaired: a matrix
 //! that is not quite symmetric or a row that does not quite sum to one is an error that names itself.
 
+use crate::filter::fixed_gain::FixedGain;
 use crate::gaussian::Gaussian;
 use crate::matrix::{all_finite, cholesky, is_finite, is_positive_semidefinite, is_symmetric};
 use crate::model::{Measurement, motion::Mode};
@@ -23,12 +24,15 @@ pub struct Problem<T, const N: usize, const M: usize> {
     pub measurement_noise: SMatrix<T, M, M>,
     /// The rule of a filter with points; none for the Kalman filter.
     pub rule: Option<Rule<T, N>>,
+    /// Gain and innovation covariance of each mode, for filters with fixed gains; none for the others. With them no equation reads Q and
+    /// R, which then say for which noises the gains are meant.
+    pub fixed_gains: Option<Vec<FixedGain<T, N, M>>>,
 }
 
 /// The estimate at step 0.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Initial<T, const N: usize> {
-    /// One estimate a mode.
+    /// One estimate a mode. Filters with fixed gains have no covariance: it is zero.
     pub modes: Vec<Gaussian<T, N>>,
     /// One probability a mode; they sum to one.
     pub mode_probabilities: Vec<T>,
@@ -101,14 +105,31 @@ pub enum InvalidProblem {
         /// The equation that needs it.
         equation: &'static str,
     },
-    /// The Kalman filter was given a measurement that is not linear.
-    #[error("`measurement` is not linear, and the Kalman filter has no other; use a cubature filter (zhu2016 (42))")]
+    /// A filter without points was given a measurement that is not linear.
+    #[error(
+        "`measurement` is not linear, and a filter without points has no other; use a cubature filter (zhu2016 (42))"
+    )]
     NotLinear,
     /// A filter with points was given no rule, or the Kalman filter one.
     #[error("`rule` is {}, but the filter's equations {} (zhu2016 (2))", if *.given { "given" } else { "missing" }, if *.given { "draw no points" } else { "draw points" })]
     Rule {
         /// Whether a rule was given.
         given: bool,
+    },
+    /// Fixed gains were given to equations that compute their own, or not given to those that need them.
+    #[error("`filter.modes` is {}, but the filter's equations {} gains (derbez2000 (2))", if *.given { "given" } else { "missing" }, if *.given { "compute their own" } else { "need fixed" })]
+    FixedGains {
+        /// Whether they were given.
+        given: bool,
+    },
+    /// A covariance was given to a filter that has none.
+    #[error(
+        "`{field}` is given, but filters with fixed gains have no covariance ({equation})",
+        equation = "derbez2000 (2)"
+    )]
+    CovarianceGiven {
+        /// The field.
+        field: String,
     },
     /// A rule's points and weights differ in number.
     #[error("`rule` has {points} points, {weights} weights and {covariance_weights} covariance weights (zhu2016 (21))")]
@@ -149,13 +170,18 @@ impl<T: Real, const N: usize, const M: usize> Problem<T, N, M> {
         check_covariance(&self.measurement_noise, "R".into(), "liu2017 (19)")?;
         self.check_measurement()?;
         self.check_rule()?;
+        self.check_fixed_gains()?;
 
         check_length("initial.modes", initial.modes.len(), modes, "zhu2016 (55)")?;
         for (j, estimate) in initial.modes.iter().enumerate() {
             let field = format!("initial.modes[{j}].mean");
             check_finite(&estimate.mean, field, "zhu2016 (55)")?;
             let field = format!("initial.modes[{j}].covariance");
-            check_covariance(&estimate.covariance, field, "zhu2016 (56)")?;
+            if self.fixed_gains.is_none() {
+                check_covariance(&estimate.covariance, field, "zhu2016 (56)")?;
+            } else if estimate.covariance.iter().any(|entry| !entry.is_zero()) {
+                return Err(InvalidProblem::CovarianceGiven { field });
+            }
         }
         let probabilities = &initial.mode_probabilities;
         let field = "initial.mode_probabilities";
@@ -190,6 +216,19 @@ impl<T: Real, const N: usize, const M: usize> Problem<T, N, M> {
                 })
             }
         }
+    }
+
+    fn check_fixed_gains(&self) -> Result<(), InvalidProblem> {
+        let Some(modes) = &self.fixed_gains else {
+            return Ok(());
+        };
+        check_length("filter.modes", modes.len(), self.modes.len(), "derbez2000 (2)")?;
+        for (j, mode) in modes.iter().enumerate() {
+            check_finite(&mode.gain, format!("filter.modes[{j}].gain"), "derbez2000 (2)")?;
+            let field = format!("filter.modes[{j}].innovation_covariance");
+            check_covariance(&mode.innovation_covariance, field, "derbez2000 (4)")?;
+        }
+        Ok(())
     }
 
     fn check_rule(&self) -> Result<(), InvalidProblem> {

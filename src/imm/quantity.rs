@@ -137,6 +137,19 @@ impl Quantity {
         )
     }
 
+    /// Whether it exists only where filters carry covariances of the state.
+    pub fn needs_covariances(self) -> bool {
+        matches!(
+            self,
+            MixedCovariance
+                | PredictedCovariance
+                | CombinedPredictionCovariance
+                | CrossCovariance
+                | UpdatedCovariance
+                | CombinedCovariance
+        )
+    }
+
     /// Whether it exists only where there is a detection.
     pub fn needs_detection(self) -> bool {
         matches!(
@@ -183,8 +196,21 @@ impl Quantity {
         self.rank() == 2 && !matches!(self, CrossCovariance | Gain)
     }
 
-    /// What it is computed from, besides the problem and the measurement.
-    pub fn inputs(self, has_detection: bool) -> &'static [Input] {
+    /// What it is computed from, besides the problem and the measurement; by filters that keep covariances, or by those that do not.
+    pub fn inputs(self, has_detection: bool, keeps_covariances: bool) -> impl Iterator<Item = Input> {
+        let exists = move |input: &Input| {
+            let (Now(quantity) | Before(quantity)) = *input;
+            keeps_covariances || !quantity.needs_covariances()
+        };
+        let inputs = match self {
+            InnovationCovariance | Gain if !keeps_covariances => &[],
+            _ => self.inputs_with_covariances(has_detection),
+        };
+        inputs.iter().copied().filter(exists)
+    }
+
+    /// What it is computed from by filters that keep covariances.
+    fn inputs_with_covariances(self, has_detection: bool) -> &'static [Input] {
         match self {
             PredictedModeProbabilities => &[Before(ModeProbabilities)],
             MixingProbabilities => &[Before(ModeProbabilities), Now(PredictedModeProbabilities)],

@@ -10,7 +10,8 @@ use nalgebra::{SMatrix, SVector};
 
 /// All values of step k. Lists have one entry a mode; step 0 is the initial estimate.
 ///
-/// In a step without a detection [`Step::measurement`] is none, and the values that come from a measurement are undecided.
+/// In a step without a detection [`Step::measurement`] is none, and the values that come from a measurement are undecided. So are all
+/// covariances of filters that carry none, those with fixed gains.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step<T, const N: usize, const M: usize> {
     /// k, counted from 0.
@@ -94,6 +95,21 @@ impl<T: Field, const N: usize, const M: usize> Step<T, N, M> {
             log_evidence: T::zero(),
             mode_probabilities: vec![T::zero(); modes],
             combined: Gaussian::zeros(),
+        }
+    }
+
+    /// Makes every covariance of the state undecided, for filters that carry none: a zero would be taken for certainty.
+    pub(super) fn forget_covariances(&mut self) {
+        let modes = self
+            .mixed
+            .iter_mut()
+            .chain(&mut self.predicted)
+            .chain(&mut self.updated);
+        for estimate in modes.chain([&mut self.combined_prediction, &mut self.combined]) {
+            estimate.covariance.fill(T::undecided());
+        }
+        for covariance in &mut self.cross_covariances {
+            covariance.fill(T::undecided());
         }
     }
 

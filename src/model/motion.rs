@@ -1,6 +1,6 @@
 //! Motion models: constant velocity and coordinated turn, and the noise that integrates along them.
 //!
-//! After this file the reader knows the matrices F and Q of both papers and that they belong together: with white noise of
+//! After this file the reader knows the matrices F and Q of zhu2016 and liu2017 and that they belong together: with white noise of
 //! spectral density q on the acceleration,
 //!
 //! ```text

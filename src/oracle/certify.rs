@@ -102,9 +102,9 @@ impl Work for Attempt<'_> {
             if let Some(failure) = computed.failures.first() {
                 return Err(undecided(failure.to_string()));
             }
-            nearest(&computed.values).map_err(undecided)
+            nearest(problem, &computed.values).map_err(undecided)
         })?;
-        let scale = scales(&trace);
+        let scale = scales(problem, &trace);
         let unit_roundoff = f64::EPSILON / 2.0;
         let perturbed = |_| {
             let setup: Setup<RandomRounding, N, M> = problem.setup_perturbed()?;
@@ -126,9 +126,8 @@ impl Work for Attempt<'_> {
 /// # Errors
 ///
 /// The first value that is not narrow enough.
-fn nearest(values: &Table<Vec<Enclosure>>) -> Result<(Trace, u32), String> {
-    // The middles serve for the scales, which need two digits.
-    let about = scales(&values.map(|_, numbers| numbers.iter().map(Enclosure::middle).collect()));
+fn nearest(problem: &ProblemFile, values: &Table<Vec<Enclosure>>) -> Result<(Trace, u32), String> {
+    let about = about(problem, values);
     let mut trace = Trace::empty(values.dimensions);
     let mut widest = 0.0_f64;
     for (step, quantity, mode) in values.all_places() {
@@ -153,6 +152,12 @@ fn nearest(values: &Table<Vec<Enclosure>>) -> Result<(Trace, u32), String> {
     )]
     let digits = (-libm::log10(widest.max(f64::MIN_POSITIVE))).max(0.0) as u32;
     Ok((trace, digits))
+}
+
+/// The scales of enclosures: their middles serve, since scales need two digits.
+fn about(problem: &ProblemFile, values: &Table<Vec<Enclosure>>) -> Trace {
+    let middles = values.map(|_, numbers| numbers.iter().map(Enclosure::middle).collect());
+    scales(problem, &middles)
 }
 
 /// The double nearest to every number of an enclosure, or to the point that it is as good as.
@@ -202,11 +207,11 @@ impl Certified {
 }
 
 /// The long CSV of a published trace, with the scale and the noise of each number in two more columns.
-pub fn long_csv(id: &str, trace: &Trace, trace_text: &str) -> String {
+pub fn long_csv(problem: &ProblemFile, trace: &Trace, trace_text: &str) -> String {
     // The noise stands in the file; the scale follows from the trace.
-    let scale = scales(trace);
+    let scale = scales(problem, trace);
     let file: Value = serde_json::from_str(trace_text).unwrap_or_default();
-    super::csv::write(id, trace, ",scale,noise", |(step, quantity, mode), index| {
+    super::csv::write(&problem.id, trace, ",scale,noise", |(step, quantity, mode), index| {
         let scale = scale.get(step, quantity, mode).map_or(1.0, |scale| scale[index]);
         let mut noise = &file["noise"][step - 1];
         if quantity.is_of_mode() {
@@ -263,7 +268,7 @@ impl Work for Decimals<'_> {
                 return Err(undecided(failure.to_string()));
             }
             let values = computed.values;
-            let about = scales(&values.map(|_, numbers| numbers.iter().map(Enclosure::middle).collect()));
+            let about = about(problem, &values);
             let mut decimals = Table::empty(values.dimensions);
             for (step, quantity, mode) in values.all_places() {
                 let Some(numbers) = values.get(step, quantity, mode) else {

@@ -7,6 +7,7 @@ use super::case::{self, BadCase, Case, Expected};
 use super::diagnose::{Diagnosis, Evidence, diagnose};
 use super::invalid::Invalid;
 use super::judge::{self, Finding, Judged, Judgement, LIMIT, Reference};
+use super::problem::FilterFile;
 use super::subject::{Answer, Broken, Precision, Ready, Subject, echoed};
 use super::trace::{Dimensions, Trace};
 use super::variant::{Variant, catalogue};
@@ -120,6 +121,8 @@ impl Outcome {
 pub struct CaseReport {
     /// Its id.
     pub id: String,
+    /// Its filter.
+    pub filter: FilterFile,
     /// Its dimensions.
     pub dimensions: Dimensions,
     /// How it went.
@@ -271,7 +274,9 @@ pub fn check(subject: &mut dyn Subject, selection: &Selection, progress: &dyn Fn
         .map(|(index, case, (shown, reference))| evidence_of(&cases[*index], case, shown, reference, &ready))
         .collect();
     let diagnosis = diagnose(&evidence, &conventions)?;
-    let hidden = Quantity::ALL.into_iter().filter(|quantity| {
+    let has_covariances = asked.iter().any(|case| case.problem.filter.keeps_covariances());
+    let exists = |quantity: &Quantity| has_covariances || !quantity.needs_covariances();
+    let hidden = Quantity::ALL.into_iter().filter(exists).filter(|quantity| {
         !answered.iter().any(|(_, _, (shown, _))| {
             shown.all_places().any(|(step, shown_quantity, mode)| {
                 shown_quantity == *quantity && shown.get(step, shown_quantity, mode).is_some()
@@ -295,6 +300,7 @@ type JudgedAnswer = (CaseReport, Option<(Trace, Reference)>);
 fn judge_answer(case: &Case, answer: Answer, ready: &Ready, conventions: &[&str]) -> Result<JudgedAnswer, Invalid> {
     let mut report = CaseReport {
         id: case.problem.id.clone(),
+        filter: case.problem.filter.clone(),
         dimensions: case.problem.dimensions(),
         outcome: Outcome::NothingShown,
         judgement: None,

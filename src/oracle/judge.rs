@@ -41,7 +41,7 @@ pub enum Finding {
     CannotTell,
     /// Built on hidden values that are under suspicion.
     Undetermined,
-    /// Shown although there is none: no detection.
+    /// Shown although there is none: no detection, or a covariance of a filter that has none.
     Stale,
     /// Not finite.
     NotFinite,
@@ -198,7 +198,7 @@ impl Reference {
             _ => std::mem::replace(&mut expected.values, Trace::empty(expected.noise.dimensions)),
         };
         Ok(Self {
-            scale: scales(&trace),
+            scale: scales(problem, &trace),
             trace,
             noise: expected.noise,
         })
@@ -426,8 +426,8 @@ fn inputs(problem: &ProblemFile, shown: &Trace, place: Place) -> (BTreeSet<Place
     let (mut hidden, mut last_shown) = (BTreeSet::new(), BTreeSet::new());
     let mut open = vec![place];
     while let Some((step, quantity, mode)) = open.pop() {
-        for input in quantity.inputs(has_detection(step)) {
-            let (step, input, is_before) = match *input {
+        for input in quantity.inputs(has_detection(step), problem.filter.keeps_covariances()) {
+            let (step, input, is_before) = match input {
                 Input::Now(input) => (step, input, false),
                 Input::Before(input) if step > 1 => (step - 1, input, true),
                 Input::Before(_) => continue,

@@ -6,9 +6,9 @@
 use super::invalid::{Class, Invalid};
 use super::trace::Dimensions;
 use super::{shape, unreadable};
-use crate::imm::InvalidProblem;
+use crate::imm::{InvalidProblem, Quantity};
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// The format of problem files.
 pub const FORMAT: &str = "immaculate-problem/1";
@@ -23,6 +23,12 @@ pub const RULES: [&str; 7] = [
     "gauss-hermite-4",
     "gauss-hermite-5",
 ];
+
+/// The readings of filters with fixed gains: each mode starts from a mixed estimate, or from its own.
+pub const MIXINGS: [&str; 2] = ["mixed", UNMIXED];
+
+/// The reading in which each mode starts from its own estimate.
+pub const UNMIXED: &str = "unmixed";
 
 /// A matrix as a list of rows.
 pub type Rows = Vec<Vec<f64>>;
@@ -117,16 +123,50 @@ pub enum FilterFile {
         /// κ.
         kappa: f64,
     },
+    /// Linear motion and measurement, with gains that are given and no covariances.
+    FixedGain {
+        /// `mixed` or `unmixed`: whether a mode starts from a mixed estimate, or from its own.
+        mixing: String,
+        /// One a mode.
+        modes: Vec<FixedGainFile>,
+    },
+}
+
+/// What a mode has in place of covariances.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FixedGainFile {
+    /// n × m.
+    pub gain: Rows,
+    /// m × m.
+    pub innovation_covariance: Rows,
 }
 
 impl FilterFile {
-    /// The kind's short name: `kalman`, `unscented`, or the rule's.
+    /// The kind's short name: `kalman`, `unscented`, the rule's, `fixed-gain` or, where no estimates are mixed, `fixed-gain-unmixed`.
     pub fn name(&self) -> &str {
         match self {
             Self::Kalman {} => "kalman",
             Self::Cubature { rule } => rule,
             Self::Unscented { .. } => "unscented",
+            Self::FixedGain { mixing, .. } if mixing == UNMIXED => "fixed-gain-unmixed",
+            Self::FixedGain { .. } => "fixed-gain",
         }
+    }
+
+    /// The printed equations that give a quantity: with fixed gains the gain and the innovation covariance are not computed but given.
+    pub fn equation(&self, quantity: Quantity) -> &'static str {
+        match (self, quantity) {
+            (Self::FixedGain { .. }, Quantity::InnovationCovariance) => "derbez2000 (4), given",
+            (Self::FixedGain { .. }, Quantity::Gain) => "derbez2000, section 3, given",
+            (Self::FixedGain { .. }, Quantity::UpdatedMean) => "derbez2000, section 3",
+            _ => quantity.equation(),
+        }
+    }
+
+    /// Whether it carries covariances.
+    pub fn keeps_covariances(&self) -> bool {
+        !matches!(self, Self::FixedGain { .. })
     }
 }
 
@@ -146,8 +186,19 @@ pub struct InitialFile {
 pub struct EstimateFile {
     /// n numbers.
     pub mean: Vec<f64>,
-    /// n × n.
-    pub covariance: Rows,
+    /// n × n; absent where the filter has fixed gains.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "if_there_at_all"
+    )]
+    #[schemars(with = "Rows")]
+    pub covariance: Option<Rows>,
+}
+
+/// A value that may be absent but, if its key is there, is not null.
+fn if_there_at_all<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Rows>, D::Error> {
+    Rows::deserialize(deserializer).map(Some)
 }
 
 /// The choices that the papers leave open; every key is always there.
@@ -306,12 +357,18 @@ impl ProblemFile {
         )?;
         for (j, estimate) in self.initial.modes.iter().enumerate() {
             check_length(&format!("problem.initial.modes[{j}].mean"), estimate.mean.len(), n)?;
-            check_matrix(
-                &format!("problem.initial.modes[{j}].covariance"),
-                &estimate.covariance,
-                n,
-                n,
-            )?;
+            let field = format!("problem.initial.modes[{j}].covariance");
+            match &estimate.covariance {
+                Some(rows) if self.filter.keeps_covariances() => check_matrix(&field, rows, n, n)?,
+                Some(_) => {
+                    let reason = "is given, but filters with fixed gains have no covariance";
+                    return Err(Invalid::new(Class::Format, field, reason));
+                }
+                None if self.filter.keeps_covariances() => {
+                    return Err(Invalid::new(Class::Format, field, "is missing"));
+                }
+                None => {}
+            }
         }
         Ok(())
     }
@@ -322,13 +379,31 @@ impl ProblemFile {
                 let reason = format!("is {rule:?}; known are {}", RULES.join(", "));
                 Err(Invalid::new(Class::Unknown, "problem.filter.rule", reason))
             }
-            FilterFile::Kalman {} if !matches!(self.measurement, MeasurementFile::Linear { .. }) => Err(Invalid::new(
-                Class::Unknown,
-                "problem.filter.kind",
-                "is kalman, which has no range and bearing; use a filter with points",
-            )),
+            FilterFile::Kalman {} | FilterFile::FixedGain { .. }
+                if !matches!(self.measurement, MeasurementFile::Linear { .. }) =>
+            {
+                let name = self.filter.name();
+                let reason = format!("is {name}, which has no range and bearing; use a filter with points");
+                Err(Invalid::new(Class::Unknown, "problem.filter.kind", reason))
+            }
+            FilterFile::FixedGain { mixing, modes } => self.check_fixed_gains(mixing, modes),
             FilterFile::Kalman {} | FilterFile::Cubature { .. } | FilterFile::Unscented { .. } => Ok(()),
         }
+    }
+
+    fn check_fixed_gains(&self, mixing: &str, modes: &[FixedGainFile]) -> Result<(), Invalid> {
+        let Dimensions { n, m, r, .. } = self.dimensions();
+        if !MIXINGS.contains(&mixing) {
+            let reason = format!("is {mixing:?}; known are {}", MIXINGS.join(", "));
+            return Err(Invalid::new(Class::Unknown, "problem.filter.mixing", reason));
+        }
+        check_length("problem.filter.modes", modes.len(), r)?;
+        for (j, mode) in modes.iter().enumerate() {
+            check_matrix(&format!("problem.filter.modes[{j}].gain"), &mode.gain, n, m)?;
+            let field = format!("problem.filter.modes[{j}].innovation_covariance");
+            check_matrix(&field, &mode.innovation_covariance, m, m)?;
+        }
+        Ok(())
     }
 
     fn check_measurements(&self) -> Result<(), Invalid> {
@@ -397,7 +472,8 @@ fn of_problem(error: &InvalidProblem) -> Invalid {
         InvalidProblem::NegativeProbability { .. } | InvalidProblem::NotNormalised { .. } => Class::NotAProbability,
         InvalidProblem::NotSymmetric { .. } => Class::NotSymmetric,
         InvalidProblem::NotPositive { .. } => Class::NotPositiveDefinite,
-        InvalidProblem::NotLinear | InvalidProblem::Rule { .. } => Class::Unknown,
+        InvalidProblem::NotLinear | InvalidProblem::Rule { .. } | InvalidProblem::FixedGains { .. } => Class::Unknown,
+        InvalidProblem::CovarianceGiven { .. } => Class::Format,
     };
     // The sentence starts with the field in backquotes.
     let sentence = error.to_string();

@@ -116,7 +116,7 @@ impl<T: Real, const N: usize, const M: usize> Setup<T, N, M> {
             let Some(shown) = shown else { break };
             let now = filter.current_mut();
             now.step = index + 1;
-            if !resume(now, shown, number) {
+            if !resume(now, shown, number, self.equations.keeps_covariances) {
                 break;
             }
         }
@@ -129,11 +129,13 @@ fn resume<T: Real, const N: usize, const M: usize>(
     now: &mut Step<T, N, M>,
     shown: &Trace,
     number: fn(f64) -> T,
+    keeps_covariances: bool,
 ) -> bool {
     let r = now.updated.len();
     let needed = (0..r)
         .flat_map(|j| [(Quantity::UpdatedMean, j), (Quantity::UpdatedCovariance, j)])
-        .chain([(Quantity::ModeProbabilities, 0)]);
+        .chain([(Quantity::ModeProbabilities, 0)])
+        .filter(|(quantity, _)| keeps_covariances || !quantity.needs_covariances());
     for (quantity, j) in needed {
         let Some(values) = shown.finite(now.step, quantity, j) else {
             return false;

@@ -1,8 +1,15 @@
 //! The natural unit of each number of a trace.
 //!
 //! After this file the reader knows in what an error is said to be large or small: a mean in its standard deviation, a covariance in
-//! √(Pᵢᵢ Pⱼⱼ), an innovation in √Sᵢᵢ, a probability in itself. The units come from the certified trace, never from the program under test.
+//! √(Pᵢᵢ Pⱼⱼ), an innovation in √Sᵢᵢ, a probability in itself. The units come from the problem and its certified trace, never from the
+//! program under test.
+//!
+//! Filters with fixed gains have no covariance. What the measurement does to their means has one: the correction K ν has K S Kᵀ, which
+//! at the equilibrium is P⁻ − P. The unit of an entry of a mean, of whatever mode, is the standard deviation of its correction in the mode
+//! where that is greatest: a mode whose gain leaves an entry alone takes it from the others by mixing. An entry that no mode corrects,
+//! like one of variance zero, has no unit of its own but that of the file.
 
+use super::problem::{FilterFile, FixedGainFile, ProblemFile};
 use super::trace::{Dimensions, Trace};
 use crate::imm::Quantity;
 
@@ -10,19 +17,50 @@ use crate::imm::Quantity;
 const LEAST_PROBABILITY: f64 = 1e-300;
 
 /// The scale of every number of a trace.
-pub fn scales(trace: &Trace) -> Trace {
-    trace.map(|(step, quantity, mode), values| scale(trace, step, quantity, mode, values))
+pub fn scales(problem: &ProblemFile, trace: &Trace) -> Trace {
+    let corrections = match &problem.filter {
+        FilterFile::FixedGain { modes, .. } => Some(corrections(modes, trace.dimensions)),
+        _ => None,
+    };
+    let corrections = corrections.as_deref();
+    trace.map(|(step, quantity, mode), values| scale(trace, corrections, (step, quantity, mode), values))
 }
 
-fn scale(trace: &Trace, step: usize, quantity: Quantity, mode: usize, values: &[f64]) -> Vec<f64> {
+/// For each entry of the state √(K S Kᵀ)ᵢᵢ in the mode where it is greatest.
+fn corrections(modes: &[FixedGainFile], Dimensions { n, m, .. }: Dimensions) -> Vec<f64> {
+    let variance = |mode: &FixedGainFile, i: usize| -> f64 {
+        let (k, s) = (&mode.gain[i], &mode.innovation_covariance);
+        (0..m)
+            .flat_map(|row| (0..m).map(move |column| k[row] * s[row][column] * k[column]))
+            .sum()
+    };
+    (0..n)
+        .map(|i| modes.iter().map(|mode| variance(mode, i)).fold(0.0, f64::max))
+        .map(deviation)
+        .collect()
+}
+
+/// The square root of a variance; 1 where there is none.
+fn deviation(variance: f64) -> f64 {
+    if variance == 0.0 { 1.0 } else { variance.sqrt() }
+}
+
+fn scale(
+    trace: &Trace,
+    corrections: Option<&[f64]>,
+    (step, quantity, mode): (usize, Quantity, usize),
+    values: &[f64],
+) -> Vec<f64> {
     use Quantity as Q;
     let Dimensions { n, m, .. } = trace.dimensions;
-    // The square roots of a covariance's diagonal; of another quantity of the same step and mode.
+    // The square roots of a covariance's diagonal, of another quantity of the same step and mode; of states where there is no covariance,
+    // those of the corrections.
     let deviations = |covariance: Q, size: usize| -> Vec<f64> {
-        trace.get(step, covariance, mode).map_or_else(
-            || vec![1.0; size],
-            |entries| (0..size).map(|i| entries[i * size + i].sqrt()).collect(),
-        )
+        match (trace.get(step, covariance, mode), corrections) {
+            (Some(entries), _) => (0..size).map(|i| deviation(entries[i * size + i])).collect(),
+            (None, Some(corrections)) => corrections.to_vec(),
+            (None, None) => vec![1.0; size],
+        }
     };
     let outer = |rows: &[f64], columns: &[f64]| -> Vec<f64> {
         rows.iter()

@@ -14,7 +14,26 @@ pub fn of_problems() -> Value {
     schema["properties"]["format"]["const"] = json!(problem::FORMAT);
     // The key is required, and null says that there is no detection.
     schema["$defs"]["MeasurementAt"]["properties"]["z"]["type"] = json!(["array", "null"]);
+    // Whether an estimate has a covariance depends on the filter.
+    let kinds = schema["$defs"]["FilterFile"]["oneOf"].as_array().into_iter().flatten();
+    let kinds: Vec<Value> = kinds.map(|kind| kind["properties"]["kind"]["const"].clone()).collect();
+    let (fixed, others): (Vec<Value>, Vec<Value>) = kinds.into_iter().partition(|kind| kind == "fixed-gain");
+    schema["oneOf"] = json!([
+        with_estimates(
+            &fixed,
+            &json!({ "properties": { "mean": {} }, "additionalProperties": false })
+        ),
+        with_estimates(&others, &json!({ "required": ["covariance"] })),
+    ]);
     schema
+}
+
+/// The schema of a problem of one of these kinds of filter, whose initial estimates have a schema of their own.
+fn with_estimates(kinds: &[Value], estimate: &Value) -> Value {
+    json!({ "properties": {
+        "filter": { "properties": { "kind": { "enum": kinds } } },
+        "initial": { "properties": { "modes": { "items": estimate } } },
+    } })
 }
 
 /// The schema of certified traces.

@@ -3,7 +3,8 @@
 //! After this file the reader knows how a problem file comes into any number system, each number of the file as it is, or perturbed.
 
 use super::invalid::{Class, Invalid};
-use super::problem::{FilterFile, MeasurementFile, ProblemFile, Rows};
+use super::problem::{FilterFile, MeasurementFile, ProblemFile, Rows, UNMIXED};
+use crate::filter::fixed_gain::FixedGain;
 use crate::gaussian::Gaussian;
 use crate::imm::{Equations, Imm, Initial, Problem};
 use crate::model::motion::Mode;
@@ -102,7 +103,10 @@ impl ProblemFile {
         });
         let estimates = self.initial.modes.iter().map(|estimate| Gaussian {
             mean: vector(&estimate.mean, number),
-            covariance: matrix(&estimate.covariance, number),
+            covariance: estimate
+                .covariance
+                .as_ref()
+                .map_or_else(SMatrix::zeros, |rows| matrix(rows, number)),
         });
         let problem = Problem {
             modes: modes.collect(),
@@ -110,9 +114,13 @@ impl ProblemFile {
             measurement: self.measurement(number)?,
             measurement_noise: matrix(&self.noise, number),
             rule,
+            fixed_gains: self.fixed_gains(number),
         };
         Ok(Setup {
-            equations: Equations::standard(&problem),
+            equations: match &self.filter {
+                FilterFile::FixedGain { mixing, .. } if mixing == UNMIXED => Equations::fixed_gain_unmixed(),
+                _ => Equations::standard(&problem),
+            },
             problem,
             initial: Initial {
                 modes: estimates.collect(),
@@ -158,9 +166,23 @@ impl ProblemFile {
         }
     }
 
+    fn fixed_gains<T: Real, const N: usize, const M: usize>(
+        &self,
+        number: fn(f64) -> T,
+    ) -> Option<Vec<FixedGain<T, N, M>>> {
+        let FilterFile::FixedGain { modes, .. } = &self.filter else {
+            return None;
+        };
+        let given = modes.iter().map(|mode| FixedGain {
+            gain: matrix(&mode.gain, number),
+            innovation_covariance: matrix(&mode.innovation_covariance, number),
+        });
+        Some(given.collect())
+    }
+
     fn rule<T: Real, const N: usize>(&self, number: fn(f64) -> T) -> Result<Option<Rule<T, N>>, Invalid> {
         let (field, rule) = match &self.filter {
-            FilterFile::Kalman {} => return Ok(None),
+            FilterFile::Kalman {} | FilterFile::FixedGain { .. } => return Ok(None),
             FilterFile::Cubature { rule } => (
                 "problem.filter.rule",
                 rule.parse::<RuleName>().and_then(|name| name.rule()),

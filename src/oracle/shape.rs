@@ -15,7 +15,7 @@ pub trait Work {
 }
 
 /// The shapes that exist.
-pub const SHAPES: [(usize, usize); 8] = [(1, 1), (2, 1), (2, 2), (4, 1), (4, 2), (5, 2), (6, 2), (8, 2)];
+pub const SHAPES: [(usize, usize); 9] = [(1, 1), (2, 1), (2, 2), (3, 1), (4, 1), (4, 2), (5, 2), (6, 2), (8, 2)];
 
 /// Does the work for n entries of the state and m of the measurement.
 ///
@@ -27,6 +27,7 @@ pub fn dispatch<W: Work>(n: usize, m: usize, work: W) -> Result<W::Output, Inval
         (1, 1) => work.run::<1, 1>(),
         (2, 1) => work.run::<2, 1>(),
         (2, 2) => work.run::<2, 2>(),
+        (3, 1) => work.run::<3, 1>(),
         (4, 1) => work.run::<4, 1>(),
         (4, 2) => work.run::<4, 2>(),
         (5, 2) => work.run::<5, 2>(),

@@ -4,7 +4,7 @@
 //! that have a `kind` must know the kind before it can read the rest, and forgets the places on the way; here they are found again.
 
 use super::invalid::{Class, Invalid};
-use super::problem::Rows;
+use super::problem::{FixedGainFile, Rows};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
@@ -43,6 +43,10 @@ const OBJECTS: [(&str, &[Kind]); 2] = [
                     ("kappa", attempt::<f64>),
                 ],
             ),
+            (
+                "fixed-gain",
+                &[("mixing", attempt::<String>), ("modes", attempt::<Vec<FixedGainFile>>)],
+            ),
         ],
     ),
 ];
@@ -63,13 +67,16 @@ pub(super) fn reason(text: &str, place: &str, sentence: &str) -> Invalid {
             return invalid;
         }
     }
-    if let Some((field, _)) = sentence
-        .strip_prefix("missing field `")
-        .and_then(|rest| rest.split_once('`'))
-    {
-        return Invalid::new(Class::Format, format!("{place}.{field}"), "is missing");
+    at(place, sentence)
+}
+
+/// What a sentence of the JSON reader says of a place.
+fn at(place: String, sentence: &str) -> Invalid {
+    let missing = sentence.strip_prefix("missing field `");
+    match missing.and_then(|rest| rest.split_once('`')) {
+        Some((field, _)) => Invalid::new(Class::Format, format!("{place}.{field}"), "is missing"),
+        None => Invalid::new(class_of(sentence), place, sentence),
     }
-    Invalid::new(class_of(sentence), place, sentence)
 }
 
 /// The class of a sentence of the JSON reader.
@@ -121,7 +128,7 @@ fn inside(text: &str, key: &str, kinds: &[Kind]) -> Option<Invalid> {
             return wrong(Class::Format, key, "is missing".into());
         };
         if let Err((inner, sentence)) = attempt(value) {
-            return wrong(class_of(&sentence), &joined(key, &inner), sentence);
+            return Some(at(joined(&place, &joined(key, &inner)), &sentence));
         }
     }
     None

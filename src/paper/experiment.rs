@@ -6,22 +6,28 @@ use super::Effort;
 use super::monte_carlo::{Progress, Run, run};
 use super::result::Comparison;
 use super::scenario::Scenario;
+use super::simulation::Simulation;
 use crate::statistics::estimate::figure;
 use std::fmt::Write;
 
 /// A scenario and its runs.
 #[derive(Debug, Clone)]
-pub struct Experiment {
+pub struct Experiment<S = Scenario> {
     /// The scenario.
-    pub scenario: Scenario,
+    pub scenario: S,
     /// The runs, `[run][contestant]`.
     pub runs: Vec<Vec<Run>>,
 }
 
-impl Experiment {
+impl<S: Simulation> Experiment<S> {
     /// Runs a scenario.
-    pub fn new(scenario: Scenario, effort: Effort, progress: Progress) -> Self {
-        let runs = run(&scenario, effort.runs.unwrap_or(scenario.runs), effort.seed, progress);
+    pub fn new(scenario: S, effort: Effort, progress: Progress) -> Self {
+        let runs = run(
+            &scenario,
+            effort.runs.unwrap_or_else(|| scenario.runs()),
+            effort.seed,
+            progress,
+        );
         Self { scenario, runs }
     }
 
@@ -43,11 +49,11 @@ impl Experiment {
         let comparison = self.comparison();
         let mut bounded = true;
         let mut words = String::from("Mean NEES (4 expected) and greatest position error of any run:");
-        for (c, contestant) in self.scenario.contestants.iter().enumerate() {
+        for (c, filter) in self.scenario.filters().iter().enumerate() {
             let (nees, _) = comparison.consistency(c);
             let greatest = comparison.greatest_position_error(c);
             bounded &= self.failures(c) == 0 && greatest < limit;
-            let (name, nees, greatest) = (&contestant.name, figure(nees.value), figure(greatest));
+            let (name, nees, greatest) = (&filter.name, figure(nees.value), figure(greatest));
             let _ = write!(words, " {name} {nees}, {greatest} m;");
         }
         let verdict = if bounded {

@@ -4,29 +4,35 @@
 //! choice that it leaves open. The folders follow their papers; this level holds what they share.
 //!
 //! - [`specification`]: the papers' equations, tables, open parameters and claims, from the files in `spec/`;
+//! - [`simulation`]: what can be run, and what the statistics ask about it;
 //! - [`scenario`]: a target that flies straight and turns, seen by a sensor, and the filters that compete on it;
 //! - [`monte_carlo`]: runs, on all cores, the same for any number of them;
 //! - [`result`]: what the runs show;
 //! - [`experiment`]: a scenario together with its runs;
 //! - [`verdict`]: how a claim is judged.
 
+pub mod derbez2000;
 pub mod experiment;
 pub mod liu2017;
 pub mod monte_carlo;
 pub mod result;
 pub mod scenario;
+pub mod simulation;
 pub mod specification;
 pub mod verdict;
 pub mod zhu2016;
 
 use monte_carlo::Progress;
-use result::Reproduction;
+use result::{Quantity, Reproduction};
+use simulation::Simulation;
 use specification::{Choices, InvalidChoice, Specification};
 use verdict::Judgement;
 
 /// A paper that can be reproduced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Paper {
+    /// Derbez, Rémillard and Jouan 2000.
+    Derbez2000,
     /// Zhu, Wang and Yuan 2016.
     Zhu2016,
     /// Liu and Wu 2017.
@@ -44,11 +50,12 @@ pub struct Effort {
 
 impl Paper {
     /// All papers, in the order of their years.
-    pub const ALL: [Self; 2] = [Self::Zhu2016, Self::Liu2017];
+    pub const ALL: [Self; 3] = [Self::Derbez2000, Self::Zhu2016, Self::Liu2017];
 
     /// The paper's key.
     pub fn key(self) -> &'static str {
         match self {
+            Self::Derbez2000 => "derbez2000",
             Self::Zhu2016 => "zhu2016",
             Self::Liu2017 => "liu2017",
         }
@@ -57,38 +64,86 @@ impl Paper {
     /// The paper's half of the specification.
     pub fn specification(self) -> &'static Specification {
         match self {
+            Self::Derbez2000 => specification::derbez2000(),
             Self::Zhu2016 => specification::zhu2016(),
             Self::Liu2017 => specification::liu2017(),
         }
     }
 
-    /// The paper's scenario under the given choices.
+    /// The simulations that the paper reports, under the given choices: the first is that of its tables.
+    pub fn simulations(self, chosen: &Choices) -> Vec<Choices> {
+        let mut all = vec![chosen.clone()];
+        if self == Self::Derbez2000 && !chosen.parameters().any(|parameter| parameter == "scenario") {
+            all.push(chosen.clone().with("scenario", "acceleration"));
+        }
+        all
+    }
+
+    /// Every open choice by itself, of those that matter to a simulation, the others as in it.
+    pub fn open_choices(self, simulation: &Choices) -> Vec<Choices> {
+        let all = self.specification().alternatives_of(simulation.chosen("scenario"));
+        all.into_iter()
+            .map(|choices| simulation.clone().and(&choices))
+            .collect()
+    }
+
+    /// The paper's simulation under the given choices.
     ///
     /// # Errors
     ///
     /// [`InvalidChoice`] when a choice names no parameter or no alternative of this paper.
+    pub fn simulation(self, choices: &Choices) -> Result<Box<dyn Simulation>, InvalidChoice> {
+        Ok(match self {
+            Self::Derbez2000 => Box::new(derbez2000::scenario(choices)?),
+            Self::Zhu2016 => Box::new(zhu2016::scenario(choices)?),
+            Self::Liu2017 => Box::new(liu2017::scenario(choices)?),
+        })
+    }
+
+    /// The paper's scenario under the given choices, of a paper that has one of the usual form: a target in the plane, filtered as a
+    /// whole.
+    ///
+    /// # Errors
+    ///
+    /// [`InvalidChoice`] when a choice names no parameter or no alternative of this paper, or the paper has no such scenario.
     pub fn scenario(self, choices: &Choices) -> Result<scenario::Scenario, InvalidChoice> {
         match self {
+            Self::Derbez2000 => Err(InvalidChoice::OtherForm {
+                paper: self.key().to_owned(),
+            }),
             Self::Zhu2016 => zhu2016::scenario(choices),
             Self::Liu2017 => liu2017::scenario(choices),
         }
     }
 
-    /// Runs the paper's scenario.
+    /// Runs the paper's simulation.
     ///
     /// # Errors
     ///
-    /// As [`Paper::scenario`].
+    /// As [`Paper::simulation`].
     pub fn reproduce(
         self,
         choices: &Choices,
         effort: Effort,
         progress: Progress,
     ) -> Result<Reproduction, InvalidChoice> {
-        let scenario = self.scenario(choices)?;
-        let runs = effort.runs.unwrap_or(scenario.runs);
-        let results = monte_carlo::run(&scenario, runs, effort.seed, progress);
-        Ok(Reproduction::new(&scenario, runs, effort.seed, &results))
+        let simulation = self.simulation(choices)?;
+        let runs = effort.runs.unwrap_or_else(|| simulation.runs());
+        let results = monte_carlo::run(&*simulation, runs, effort.seed, progress);
+        Ok(Reproduction::new(&*simulation, runs, effort.seed, &results))
+    }
+
+    /// What a row of a published table measures, where the simulation under these choices is the one that the table is of.
+    pub fn quantity_of_row(self, choices: &Choices, table: u32, row: &str) -> Option<Quantity> {
+        match self {
+            // Table 2 is of scenario 3, and scenario 1 has none.
+            Self::Derbez2000 => {
+                let scenario = specification::derbez2000().chosen(choices, "scenario").ok()?;
+                derbez2000::quantity_of_row(row).filter(|_| table == 1 && scenario == "manoeuvres")
+            }
+            Self::Zhu2016 => zhu2016::quantity_of_row(row),
+            Self::Liu2017 => liu2017::quantity_of_row(row),
+        }
     }
 
     /// Judges the paper's claims.
@@ -98,6 +153,7 @@ impl Paper {
     /// [`InvalidChoice`] never, unless the specification and the code disagree about the scenario's parameters.
     pub fn judge(self, effort: Effort, progress: Progress) -> Result<Vec<Judgement>, InvalidChoice> {
         match self {
+            Self::Derbez2000 => derbez2000::claims::judge(effort, progress),
             Self::Zhu2016 => zhu2016::claims::judge(effort, progress),
             Self::Liu2017 => liu2017::claims::judge(effort, progress),
         }

@@ -4,7 +4,8 @@
 //! ChaCha with eight rounds, keyed by the seed; a run's numbers depend on the seed and the run alone. Gaussian numbers are made by
 //! the Box-Muller transform with the portable functions of [`Real`], so that every platform draws the same.
 
-use super::scenario::{Contestant, Draw, Scenario};
+use super::scenario::{Contestant, Draw};
+use super::simulation::Simulation;
 use crate::imm::{Failure, Imm, Initial, Step};
 use crate::number::Real;
 use crate::statistics::consistency::{nees, nis};
@@ -61,34 +62,15 @@ pub struct Run {
     pub time: Duration,
 }
 
-/// Runs every contestant on every draw; the result is `[run][contestant]`.
-pub fn run(scenario: &Scenario, runs: usize, seed: u64, progress: Progress) -> Vec<Vec<Run>> {
+/// Runs a simulation; the result is `[run][filter]`.
+pub fn run(simulation: &dyn Simulation, runs: usize, seed: u64, progress: Progress) -> Vec<Vec<Run>> {
     (0..runs)
         .into_par_iter()
         .map(|run| {
-            let results = one_run(scenario, run, seed);
+            let results = simulation.one_run(run, seed);
             progress();
             results
         })
-        .collect()
-}
-
-/// All contestants on one run's draw, or each on a draw of its own when the scenario is not paired.
-fn one_run(scenario: &Scenario, run: usize, seed: u64) -> Vec<Run> {
-    let draw = |stream: usize| {
-        let stream = u64::try_from(stream).unwrap_or(u64::MAX);
-        scenario.draw(&mut Generator::new(seed, stream))
-    };
-    let count = scenario.contestants.len();
-    if scenario.paired {
-        let shared = draw(run);
-        let contestants = scenario.contestants.iter();
-        return contestants.map(|contestant| track(contestant, &shared)).collect();
-    }
-    // Streams of the contestants are interleaved, so that no two share one.
-    let contestants = scenario.contestants.iter().enumerate();
-    contestants
-        .map(|(index, contestant)| track(contestant, &draw(run * count + index)))
         .collect()
 }
 

@@ -6,7 +6,7 @@
 //! A run in which a step could not be computed is counted and named, and is left out of the error figures of that filter.
 
 use super::monte_carlo::Run;
-use super::scenario::Scenario;
+use super::simulation::{Path, Simulation};
 use super::specification::Choices;
 use crate::statistics::consistency::bounds;
 use crate::statistics::delay::detection_delays;
@@ -83,7 +83,7 @@ pub enum Average {
 #[derive(Debug, Clone, Copy)]
 pub struct Comparison<'a> {
     /// The scenario.
-    pub scenario: &'a Scenario,
+    pub scenario: &'a dyn Simulation,
     /// The runs.
     pub runs: &'a [Vec<Run>],
 }
@@ -91,8 +91,13 @@ pub struct Comparison<'a> {
 impl Comparison<'_> {
     /// The position of a contestant.
     pub fn index(&self, name: &str) -> Option<usize> {
-        let contestants = &self.scenario.contestants;
-        contestants.iter().position(|contestant| contestant.name == name)
+        let filters = self.scenario.filters();
+        filters.iter().position(|filter| filter.name == name)
+    }
+
+    /// The number of steps of a run.
+    fn steps(&self) -> usize {
+        self.scenario.motions().len()
     }
 
     /// The runs that all the given contestants completed.
@@ -110,10 +115,10 @@ impl Comparison<'_> {
         quantity: Quantity,
         chosen: &dyn Fn(usize) -> bool,
     ) -> Vec<f64> {
-        let steps: Vec<usize> = (0..self.scenario.schedule.len()).filter(|k| chosen(*k)).collect();
+        let steps: Vec<usize> = (0..self.steps()).filter(|k| chosen(*k)).collect();
         let count = steps.len() as f64;
         let squared = |run: &Vec<Run>, k: usize| quantity.squared(&run[contestant].errors[k]);
-        match self.scenario.average {
+        match self.scenario.average() {
             Average::RootMeanSquare => {
                 let of_run = |run: &&Vec<Run>| steps.iter().map(|&k| squared(run, k)).sum::<f64>() / count;
                 runs.iter().map(of_run).collect()
@@ -168,7 +173,7 @@ impl Comparison<'_> {
             let squares: Vec<f64> = runs.iter().map(squared).collect();
             rmse::root_mean_square(&squares)
         };
-        (0..self.scenario.schedule.len()).map(at_step).collect()
+        (0..self.steps()).map(at_step).collect()
     }
 
     /// The greatest difference of two contestants' estimates of a state, component by component, over all steps of all runs; they
@@ -213,10 +218,9 @@ impl Comparison<'_> {
 
     /// The mode of a contestant that models the truth at each step; none when it has no such mode.
     pub fn true_modes(&self, contestant: usize) -> Option<Vec<usize>> {
-        let modes = &self.scenario.contestants[contestant].problem.modes;
-        let of_motion = |name: &str| modes.iter().position(|mode| mode.name == name);
-        let schedule = self.scenario.schedule.iter();
-        schedule.map(|motion| of_motion(motion.name())).collect()
+        let modes = &self.scenario.filters()[contestant].modes;
+        let of_motion = |name: &str| modes.iter().position(|mode| mode == name);
+        self.scenario.motions().into_iter().map(of_motion).collect()
     }
 
     /// The delay of detection of each change of motion, `[change][run]`, in steps; empty for a filter of one mode.
@@ -235,12 +239,12 @@ impl Comparison<'_> {
     /// The mean over runs of a contestant's mode probabilities, `[step][mode]`.
     pub fn mean_mode_probabilities(&self, contestant: usize) -> Vec<Vec<f64>> {
         let runs = self.completed(&[contestant]);
-        let modes = self.scenario.contestants[contestant].problem.modes.len();
+        let modes = self.scenario.filters()[contestant].modes.len();
         let at = |k: usize, j: usize| {
             let of_run = |run: &&Vec<Run>| run[contestant].mode_probabilities[k][j];
             runs.iter().map(of_run).sum::<f64>() / runs.len() as f64
         };
-        let steps = 0..self.scenario.schedule.len();
+        let steps = 0..self.steps();
         steps.map(|k| (0..modes).map(|j| at(k, j)).collect()).collect()
     }
 }
@@ -266,6 +270,20 @@ pub struct Reproduction {
     pub filters: Vec<Performance>,
     /// Paired differences of the filters' overall errors.
     pub differences: Vec<Difference>,
+    /// The first run, where the paper shows one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub first_run: Option<FirstRun>,
+}
+
+/// Positions of the first run, [x, y] at each step.
+#[derive(Debug, Clone, Serialize)]
+pub struct FirstRun {
+    /// The true ones.
+    pub truth: Vec<[f64; 2]>,
+    /// The measured ones.
+    pub measured: Vec<[f64; 2]>,
+    /// The estimated ones of each filter, as far as it came.
+    pub estimates: Vec<Vec<[f64; 2]>>,
 }
 
 /// What one filter did.
@@ -289,9 +307,9 @@ pub struct Performance {
     pub rmse: Vec<ErrorHistory>,
     /// Mean mode probabilities, `[step][mode]`.
     pub mode_probabilities: Vec<Vec<f64>>,
-    /// Consistency with the truth: the expectation is 4 for a matched filter.
+    /// Consistency with the truth: the expectation for a matched filter is the number of components of the state.
     pub nees: Consistency,
-    /// Consistency with the measurements: the expectation is 2 for a matched filter.
+    /// Consistency with the measurements: the expectation for a matched filter is the number of components of the measurement.
     pub nis: Consistency,
     /// Delay of detection of each change of motion.
     pub delays: Vec<Delay>,
@@ -373,19 +391,19 @@ pub const FALSE_ALARM: f64 = 0.05;
 
 impl Reproduction {
     /// All figures of the runs.
-    pub fn new(scenario: &Scenario, runs: usize, seed: u64, results: &[Vec<Run>]) -> Self {
+    pub fn new(scenario: &dyn Simulation, runs: usize, seed: u64, results: &[Vec<Run>]) -> Self {
         let comparison = Comparison {
             scenario,
             runs: results,
         };
-        let contestants = 0..scenario.contestants.len();
+        let filters = scenario.filters();
         let mut differences = Vec::new();
-        for a in contestants.clone() {
-            for b in a + 1..scenario.contestants.len() {
+        for a in 0..filters.len() {
+            for b in a + 1..filters.len() {
                 for quantity in [Quantity::Position, Quantity::Velocity] {
                     differences.push(Difference {
-                        filter: scenario.contestants[a].name.clone(),
-                        minus: scenario.contestants[b].name.clone(),
+                        filter: filters[a].name.clone(),
+                        minus: filters[b].name.clone(),
                         quantity,
                         estimate: comparison.difference(a, b, quantity),
                     });
@@ -393,16 +411,22 @@ impl Reproduction {
             }
         }
         Self {
-            paper: scenario.paper,
-            choices: scenario.choices.clone(),
+            paper: scenario.paper(),
+            choices: scenario.choices().clone(),
             runs,
-            steps: scenario.schedule.len(),
-            times: (0..scenario.schedule.len()).map(|k| scenario.time(k)).collect(),
+            steps: scenario.motions().len(),
+            times: scenario.times(),
             seed,
-            motions: scenario.schedule.iter().map(|motion| motion.name()).collect(),
-            filters: contestants.map(|c| performance(&comparison, c)).collect(),
+            motions: scenario.motions(),
+            filters: (0..filters.len()).map(|c| performance(&comparison, c)).collect(),
             differences,
+            first_run: scenario.first_path(seed).map(|path| first_run(&path, results)),
         }
+    }
+
+    /// Whether a mode models what the target does in a step, counted from 0.
+    pub fn is_true(&self, mode: &str, step: usize) -> bool {
+        self.motions[step].split(", ").any(|motion| motion == mode)
     }
 
     /// The overall error of a filter in a quantity.
@@ -413,8 +437,28 @@ impl Reproduction {
     }
 }
 
+/// The positions of the first run: what a filter estimated is the truth and its error.
+fn first_run(path: &Path, results: &[Vec<Run>]) -> FirstRun {
+    let of_filter = |run: &Run| {
+        let steps = path.truth.iter().zip(&run.errors);
+        steps
+            .map(|(truth, error)| [truth[0] + error[0], truth[1] + error[2]])
+            .collect()
+    };
+    FirstRun {
+        truth: path.truth.iter().map(|position| [position[0], position[1]]).collect(),
+        measured: path
+            .measured
+            .iter()
+            .map(|position| [position[0], position[1]])
+            .collect(),
+        estimates: results.first().into_iter().flatten().map(of_filter).collect(),
+    }
+}
+
 fn performance(comparison: &Comparison, c: usize) -> Performance {
-    let contestant = &comparison.scenario.contestants[c];
+    let filter = comparison.scenario.filters().swap_remove(c);
+    let (state_components, measured_components) = comparison.scenario.components();
     let of_contestant = || comparison.runs.iter().map(|run| &run[c]);
     let failures = of_contestant()
         .enumerate()
@@ -437,17 +481,17 @@ fn performance(comparison: &Comparison, c: usize) -> Performance {
         values: comparison.rmse(c, quantity),
     };
     Performance {
-        name: contestant.name.clone(),
-        modes: contestant.problem.modes.iter().map(|mode| mode.name.clone()).collect(),
-        points: contestant.points.map(|(points, _)| points),
-        effective_points: contestant.points.map(|(_, effective)| effective),
+        name: filter.name,
+        modes: filter.modes,
+        points: filter.points.map(|(points, _)| points),
+        effective_points: filter.points.map(|(_, effective)| effective),
         completed_runs: comparison.runs.len() - failures.len(),
         failures,
         errors: Quantity::ALL.into_iter().map(error).collect(),
         rmse: Quantity::ALL.into_iter().map(history).collect(),
         mode_probabilities: comparison.mean_mode_probabilities(c),
-        nees: consistency(comparison, c, nees, 4.0, |run| &run.nees),
-        nis: consistency(comparison, c, nis, 2.0, |run| &run.nis),
+        nees: consistency(comparison, c, nees, state_components, |run| &run.nees),
+        nis: consistency(comparison, c, nis, measured_components, |run| &run.nis),
         delays: delays(comparison, c),
         microseconds_per_step: 1e6 * seconds / steps as f64,
     }
@@ -462,7 +506,7 @@ fn consistency(
     values: fn(&Run) -> &Vec<f64>,
 ) -> Consistency {
     let runs = comparison.completed(&[contestant]);
-    let steps = comparison.scenario.schedule.len();
+    let steps = comparison.steps();
     if runs.is_empty() {
         return Consistency {
             mean,
@@ -485,16 +529,16 @@ fn consistency(
 }
 
 fn delays(comparison: &Comparison, contestant: usize) -> Vec<Delay> {
-    let schedule = &comparison.scenario.schedule;
-    let changes = (1..schedule.len()).filter(|&k| schedule[k] != schedule[k - 1]);
+    let (motions, times) = (comparison.scenario.motions(), comparison.scenario.times());
+    let changes = (1..motions.len()).filter(|&k| motions[k] != motions[k - 1]);
     let delays = comparison.delays(contestant);
-    let interval = comparison.scenario.interval;
+    let interval = comparison.scenario.interval();
     changes
         .zip(&delays)
         .map(|(k, of_runs)| {
             let detected: Vec<f64> = of_runs.iter().flatten().map(|steps| *steps as f64 * interval).collect();
             Delay {
-                time: comparison.scenario.time(k),
+                time: times[k],
                 detected: detected.len(),
                 mean: detected.iter().sum::<f64>() / detected.len() as f64,
                 greatest: detected.iter().copied().fold(f64::NAN, f64::max),

@@ -1,10 +1,11 @@
 //! A target that flies straight and turns, a sensor that sees it, and the filters that compete.
 //!
-//! After this file the reader knows everything that both papers' simulations have in common: a schedule of motions, a draw of one
-//! run's truth, measurements and initial estimate, and contestants that all see the same draw.
+//! After this file the reader knows everything that the simulations of zhu2016 and liu2017 have in common: a schedule of motions, a draw
+//! of one run's truth, measurements and initial estimate, and contestants that all see the same draw.
 
-use super::monte_carlo::Generator;
+use super::monte_carlo::{Generator, Run, track};
 use super::result::Average;
+use super::simulation::{Filter, Simulation};
 use super::specification::Choices;
 use crate::gaussian::Gaussian;
 use crate::imm::{Equations, Problem};
@@ -171,5 +172,67 @@ impl Scenario {
                 covariance: self.initial_covariance,
             },
         }
+    }
+}
+
+impl Simulation for Scenario {
+    fn paper(&self) -> &'static str {
+        self.paper
+    }
+
+    fn choices(&self) -> &Choices {
+        &self.choices
+    }
+
+    fn runs(&self) -> usize {
+        self.runs
+    }
+
+    fn times(&self) -> Vec<f64> {
+        (0..self.schedule.len()).map(|k| self.time(k)).collect()
+    }
+
+    fn interval(&self) -> f64 {
+        self.interval
+    }
+
+    fn motions(&self) -> Vec<&'static str> {
+        self.schedule.iter().map(|motion| motion.name()).collect()
+    }
+
+    fn average(&self) -> Average {
+        self.average
+    }
+
+    fn components(&self) -> (f64, f64) {
+        (4.0, 2.0)
+    }
+
+    fn filters(&self) -> Vec<Filter> {
+        let filter = |contestant: &Contestant| Filter {
+            name: contestant.name.clone(),
+            modes: contestant.problem.modes.iter().map(|mode| mode.name.clone()).collect(),
+            points: contestant.points,
+        };
+        self.contestants.iter().map(filter).collect()
+    }
+
+    /// All contestants on one run's draw, or each on a draw of its own when the scenario is not paired.
+    fn one_run(&self, run: usize, seed: u64) -> Vec<Run> {
+        let draw = |stream: usize| {
+            let stream = u64::try_from(stream).unwrap_or(u64::MAX);
+            self.draw(&mut Generator::new(seed, stream))
+        };
+        let count = self.contestants.len();
+        if self.paired {
+            let shared = draw(run);
+            let contestants = self.contestants.iter();
+            return contestants.map(|contestant| track(contestant, &shared)).collect();
+        }
+        // Streams of the contestants are interleaved, so that no two share one.
+        let contestants = self.contestants.iter().enumerate();
+        contestants
+            .map(|(index, contestant)| track(contestant, &draw(run * count + index)))
+            .collect()
     }
 }

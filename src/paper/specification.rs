@@ -122,6 +122,9 @@ pub struct Parameter {
     pub printed: String,
     /// The alternative that is used when no other is asked for.
     pub default: String,
+    /// The one of the paper's scenarios that has this parameter; none where all have.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scenario: Option<String>,
     /// All alternatives, the default among them.
     #[serde(rename = "alternative")]
     pub alternatives: Vec<Alternative>,
@@ -173,6 +176,12 @@ pub enum InvalidChoice {
         /// The names that there are.
         known: String,
     },
+    /// A scenario of the usual form, of a paper that has none.
+    #[error("{paper} filters each coordinate by itself and has no scenario of the form that was asked for")]
+    OtherForm {
+        /// The paper.
+        paper: String,
+    },
     /// No such alternative.
     #[error("the parameter `{parameter}` of {paper} has no alternative `{name}`; it has {known}")]
     Alternative {
@@ -205,6 +214,13 @@ impl Choices {
         self
     }
 
+    /// These choices and others, which win.
+    #[must_use]
+    pub fn and(mut self, others: &Self) -> Self {
+        self.0.extend(others.0.clone());
+        self
+    }
+
     /// Choices from texts of the form `parameter=alternative`.
     ///
     /// # Errors
@@ -230,6 +246,11 @@ impl Choices {
         choices.join(", ")
     }
 
+    /// The alternative that is chosen for a parameter; none where it is left at its default.
+    pub fn chosen(&self, parameter: &str) -> Option<&str> {
+        self.0.get(parameter).map(String::as_str)
+    }
+
     /// The names of the parameters that are chosen.
     pub fn parameters(&self) -> impl Iterator<Item = &str> {
         self.0.keys().map(String::as_str)
@@ -252,15 +273,15 @@ impl Specification {
                 known: names.join(", "),
             });
         };
-        let name = choices.0.get(parameter).unwrap_or(&known.default);
-        if let Some(alternative) = known.alternatives.iter().find(|a| a.name == *name) {
+        let name = choices.chosen(parameter).unwrap_or(&known.default);
+        if let Some(alternative) = known.alternatives.iter().find(|a| a.name == name) {
             return Ok(&alternative.name);
         }
         let names: Vec<&str> = known.alternatives.iter().map(|a| a.name.as_str()).collect();
         Err(InvalidChoice::Alternative {
             paper: paper(),
             parameter: parameter.to_owned(),
-            name: name.clone(),
+            name: name.to_owned(),
             known: names.join(", "),
         })
     }
@@ -286,8 +307,21 @@ impl Specification {
 
     /// All choices of one alternative that is not a default, in the order of the file.
     pub fn single_alternatives(&self) -> Vec<Choices> {
+        Self::alternatives(self.parameters.iter())
+    }
+
+    /// The same for one of the paper's scenarios, its default one where none is named: of the parameters that it has.
+    pub fn alternatives_of(&self, scenario: Option<&str>) -> Vec<Choices> {
+        let named = self.parameters.iter().find(|parameter| parameter.name == "scenario");
+        let scenario = scenario.or(named.map(|parameter| parameter.default.as_str()));
+        let belongs = |of: &str| scenario == Some(of);
+        let parameters = self.parameters.iter().filter(|parameter| parameter.name != "scenario");
+        Self::alternatives(parameters.filter(|parameter| parameter.scenario.as_deref().is_none_or(belongs)))
+    }
+
+    fn alternatives<'a>(parameters: impl Iterator<Item = &'a Parameter>) -> Vec<Choices> {
         let mut all = Vec::new();
-        for parameter in &self.parameters {
+        for parameter in parameters {
             for alternative in &parameter.alternatives {
                 if alternative.name != parameter.default {
                     all.push(Choices::of(&parameter.name, &alternative.name));
@@ -296,6 +330,19 @@ impl Specification {
         }
         all
     }
+}
+
+/// The specification of derbez2000.
+pub fn derbez2000() -> &'static Specification {
+    static SPECIFICATION: LazyLock<Specification> = LazyLock::new(|| {
+        parse([
+            include_str!("../../spec/derbez2000/equations.toml"),
+            include_str!("../../spec/derbez2000/tables.toml"),
+            include_str!("../../spec/derbez2000/scenario.toml"),
+            include_str!("../../spec/derbez2000/claims.toml"),
+        ])
+    });
+    &SPECIFICATION
 }
 
 /// The specification of zhu2016.

@@ -101,7 +101,12 @@ fn faults(report: &Report) -> String {
         let Some((case, judged)) = faults.first() else { continue };
         let mut cases: Vec<&str> = faults.iter().map(|(case, _)| case.id.as_str()).collect();
         cases.dedup();
-        let _ = writeln!(text, "\n{heading}  {}  —  {}", quantity.name(), quantity.equation());
+        let _ = writeln!(
+            text,
+            "\n{heading}  {}  —  {}",
+            quantity.name(),
+            case.filter.equation(quantity)
+        );
         text.push_str(&wrapped(&first_fault(case, judged, report), "  "));
         if !judged.hidden.is_empty() {
             let names: Vec<&str> = judged.hidden.iter().map(|quantity| quantity.name()).collect();
@@ -296,7 +301,7 @@ fn coverage(report: &Report) -> String {
         ),
         (
             Finding::Stale,
-            "are shown in steps without a detection, where there are none, and were passed over",
+            "are shown where there are none, without a detection or as covariances of fixed gains, and were passed over",
         ),
     ] {
         let values = report

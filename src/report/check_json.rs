@@ -21,7 +21,7 @@ pub fn json(report: &Report) -> Value {
             let values = case.judgement.iter().flat_map(|judgement| &judgement.values);
             let unusual: Vec<Value> = values
                 .filter(|value| value.finding != Finding::Right)
-                .map(|value| value_json(value, &names))
+                .map(|value| value_json(value, case.filter.equation(value.place.1), &names))
                 .collect();
             json!({
                 "id": case.id,
@@ -53,13 +53,13 @@ pub fn json(report: &Report) -> Value {
     })
 }
 
-fn value_json(value: &Judged, names: &dyn Fn(&[Quantity]) -> Vec<&'static str>) -> Value {
+fn value_json(value: &Judged, equation: &str, names: &dyn Fn(&[Quantity]) -> Vec<&'static str>) -> Value {
     let (step, quantity, mode) = value.place;
     json!({
         "step": step,
         "quantity": quantity.name(),
         "mode": quantity.is_of_mode().then_some(mode),
-        "equation": quantity.equation(),
+        "equation": equation,
         "finding": finding(value.finding),
         "error_in_units": value.error,
         "own": value.own.map(|own| json!({
@@ -80,7 +80,7 @@ fn finding(finding: Finding) -> &'static str {
         Finding::Propagated => "propagated",
         Finding::CannotTell => "cannot tell",
         Finding::Undetermined => "undetermined",
-        Finding::Stale => "shown without a detection",
+        Finding::Stale => "shown where there is none",
         Finding::NotFinite => "not finite",
         Finding::Fault => "fault",
     }

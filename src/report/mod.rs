@@ -62,11 +62,20 @@ pub fn standard_errors(value: f64) -> String {
 
 /// A paper's key, title and source, the key standing out.
 fn citation(paper: &Citation) -> String {
-    let indent = " ".repeat(9);
+    let indent = indent_of(paper);
     let mut text = wrapped(&paper.title, &indent);
-    text.replace_range(..indent.len(), &format!("{:<9}", paper.key));
-    text.push_str(&wrapped(&format!("{}, doi:{}", paper.venue, paper.doi), &indent));
+    text.replace_range(..indent.len(), &format!("{:<width$}", paper.key, width = indent.len()));
+    let source = match paper.doi.as_str() {
+        "" => paper.venue.clone(),
+        doi => format!("{}, doi:{doi}", paper.venue),
+    };
+    text.push_str(&wrapped(&source, &indent));
     text
+}
+
+/// As wide as a paper's key and a blank, and nine at least.
+fn indent_of(paper: &Citation) -> String {
+    " ".repeat(9.max(paper.key.len() + 1))
 }
 
 /// A paragraph broken at words, every line indented.

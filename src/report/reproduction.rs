@@ -3,10 +3,10 @@
 //! After this file the reader knows what each column of a reproduced table is, and which published figure stands beside which
 //! computed one.
 
-use super::{citation, standard_errors, table, wrapped};
-use crate::paper::result::{ErrorFigure, Performance, Quantity, Reproduction};
+use super::{citation, indent_of, standard_errors, table, wrapped};
+use crate::paper::Paper;
+use crate::paper::result::{Consistency, ErrorFigure, FirstRun, Performance, Quantity, Reproduction};
 use crate::paper::specification::{Choices, Specification, Table};
-use crate::paper::{Paper, liu2017, zhu2016};
 use crate::statistics::estimate::figure;
 use serde::Serialize;
 use std::fmt::Write;
@@ -42,13 +42,9 @@ pub fn published_and_computed(paper: Paper, reproduction: &Reproduction) -> Vec<
 }
 
 fn compare(paper: Paper, reproduction: &Reproduction, table: &Table) -> Vec<Comparison> {
-    let quantity_of_row = match paper {
-        Paper::Zhu2016 => zhu2016::quantity_of_row,
-        Paper::Liu2017 => liu2017::quantity_of_row,
-    };
     let mut comparisons = Vec::new();
     for row in &table.rows {
-        let Some(quantity) = quantity_of_row(&row.name) else {
+        let Some(quantity) = paper.quantity_of_row(&reproduction.choices, table.number, &row.name) else {
             continue;
         };
         for (column, published) in table.columns.iter().zip(&row.values) {
@@ -114,13 +110,19 @@ pub fn text(paper: Paper, reproduction: &Reproduction) -> String {
             text.push_str(DIFFERENCE_NOTE);
         }
     }
+    if published_and_computed(paper, reproduction).is_empty() {
+        let _ = writeln!(text, "\nErrors, of which the paper publishes no figures");
+        let _ = writeln!(text, "{}", unpublished(reproduction));
+    }
     let _ = writeln!(text, "\nPaired differences: the same truth and noise for both filters");
     let _ = writeln!(text, "{}", differences(reproduction));
-    let _ = writeln!(text, "\nDelay until the true mode is more likely than not");
-    let _ = writeln!(text, "{}", delays(reproduction));
+    if reproduction.filters.iter().any(|filter| !filter.delays.is_empty()) {
+        let _ = writeln!(text, "\nDelay until the true mode is more likely than not");
+        let _ = writeln!(text, "{}", delays(reproduction));
+    }
     let _ = writeln!(text, "\nConsistency and cost");
     let _ = writeln!(text, "{}", consistency(reproduction));
-    text.push_str(CONSISTENCY_NOTE);
+    text.push_str(&consistency_note(reproduction));
     text.push_str(&failures(reproduction));
     text
 }
@@ -130,15 +132,23 @@ Difference: computed minus published, in standard errors of the computed figure.
 large, so that up to some 4 the two agree.
 ";
 
-const CONSISTENCY_NOTE: &str = "\
-NEES compares errors with the filter's own covariance (4 if they match, more if it is over-confident), NIS innovations
-with theirs (2). Inside: the part of the steps whose mean over runs is within the 95 % bounds of a matched filter.
-";
+fn consistency_note(reproduction: &Reproduction) -> String {
+    let expected = |of: fn(&Performance) -> f64| reproduction.filters.first().map_or(f64::NAN, of);
+    format!(
+        "\
+NEES compares errors with the filter's own covariance ({} if they match, more if it is over-confident), NIS innovations
+with theirs ({}). Inside: the part of the steps whose mean over runs is within the 95 % bounds of a matched filter.
+",
+        expected(|filter| filter.nees.expected),
+        expected(|filter| filter.nis.expected),
+    )
+}
 
 fn head(specification: &Specification, reproduction: &Reproduction) -> String {
     format!(
-        "{}         {} runs of {} steps, seed {}; choices: {}\n",
+        "{}{}{} runs of {} steps, seed {}; choices: {}\n",
         citation(&specification.paper),
+        indent_of(&specification.paper),
         reproduction.runs,
         reproduction.steps,
         reproduction.seed,
@@ -181,6 +191,19 @@ fn errors(comparisons: &[Comparison]) -> comfy_table::Table {
 /// A difference of errors below this, in metres or metres per second, is what rounding leaves at positions of some 10⁴ m, where the
 /// spacing of doubles is 4 · 10⁻¹²: it says nothing about the filters.
 const ROUNDING: f64 = 1e-11;
+
+/// The errors of every filter, where there is nothing to stand beside them.
+fn unpublished(reproduction: &Reproduction) -> comfy_table::Table {
+    let mut header = vec![""];
+    header.extend(Quantity::ALL.iter().map(|quantity| quantity.label()));
+    let mut table = table(&header);
+    for filter in &reproduction.filters {
+        let mut row = vec![filter.name.clone()];
+        row.extend(filter.errors.iter().map(|error| figure(error.estimate.value)));
+        table.add_row(row);
+    }
+    table
+}
 
 fn differences(reproduction: &Reproduction) -> comfy_table::Table {
     let mut table = table(&["", "position (m)", "/ s.e.", "velocity (m/s)", "/ s.e."]);
@@ -247,9 +270,9 @@ fn consistency(reproduction: &Reproduction) -> comfy_table::Table {
         table.add_row([
             filter.name.clone(),
             figure(filter.nees.mean.value),
-            format!("{:.0} %", 100.0 * filter.nees.inside),
+            inside(&filter.nees),
             figure(filter.nis.mean.value),
-            format!("{:.0} %", 100.0 * filter.nis.inside),
+            inside(&filter.nis),
             count(filter.points),
             count(filter.effective_points),
             format!("{:.1}", filter.microseconds_per_step),
@@ -257,6 +280,15 @@ fn consistency(reproduction: &Reproduction) -> comfy_table::Table {
         ]);
     }
     table
+}
+
+/// The part of the steps that is inside the bounds; a filter without covariances has none.
+fn inside(consistency: &Consistency) -> String {
+    if consistency.mean.value.is_finite() {
+        format!("{:.0} %", 100.0 * consistency.inside)
+    } else {
+        "—".to_owned()
+    }
 }
 
 /// The runs that ended early, the first three of each filter by name.
@@ -342,10 +374,26 @@ pub fn mode_probabilities_csv(reproduction: &Reproduction) -> String {
     for filter in &reproduction.filters {
         for (k, probabilities) in filter.mode_probabilities.iter().enumerate() {
             for (mode, probability) in filter.modes.iter().zip(probabilities) {
-                let truth = u8::from(*mode == reproduction.motions[k]);
+                let truth = u8::from(reproduction.is_true(mode, k));
                 let time = reproduction.times[k];
                 let _ = writeln!(text, "{time},{},{mode},{probability},{truth}", filter.name);
             }
+        }
+    }
+    text
+}
+
+/// The first run as CSV: `time,what,x,y`, what being `truth`, `measured` or a filter.
+pub fn path_csv(reproduction: &Reproduction, first_run: &FirstRun) -> String {
+    let mut text = String::from("time,what,x,y\n");
+    let filters = reproduction.filters.iter().map(|filter| filter.name.as_str());
+    let names = ["truth", "measured"].into_iter().chain(filters);
+    let paths = [&first_run.truth, &first_run.measured]
+        .into_iter()
+        .chain(&first_run.estimates);
+    for (name, path) in names.zip(paths) {
+        for (time, [x, y]) in reproduction.times.iter().zip(path) {
+            let _ = writeln!(text, "{time},{name},{x},{y}");
         }
     }
     text

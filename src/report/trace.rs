@@ -29,7 +29,7 @@ pub fn text(problem: &ProblemFile, values: &Table<Vec<String>>) -> String {
             if values.get(step, quantity, 0).is_none() {
                 continue;
             }
-            let _ = writeln!(text, "  {}  —  {}", quantity.name(), quantity.equation());
+            let _ = writeln!(text, "  {}  —  {}", quantity.name(), problem.filter.equation(quantity));
             for mode in 0..modes {
                 let Some(numbers) = values.get(step, quantity, mode) else {
                     continue;

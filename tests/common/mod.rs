@@ -2,6 +2,7 @@
 
 #![allow(dead_code, reason = "each test file uses its own part of this one")]
 
+use immaculate::filter::fixed_gain::FixedGain;
 use immaculate::gaussian::Gaussian;
 use immaculate::imm::{Equations, Failure, Imm, Initial, InvalidProblem, Problem, Step};
 use immaculate::model::motion::{Mode, constant_velocity, coordinated_turn, integrated_noise};
@@ -67,6 +68,21 @@ pub fn linear_scene() -> Scene {
         initial: initial(),
         measurements: measurements(|x, y, noise| vector![x + 40.0 * noise[0], y + 20.0 * noise[1]]),
     }
+}
+
+/// The linear scene for filters with fixed gains, one a mode, which are of no equilibrium, and unequal innovation covariances.
+pub fn fixed_gain_scene() -> Scene {
+    let mut scene = linear_scene();
+    let given = |j: f64| FixedGain {
+        gain: matrix![0.5 + 0.1 * j, 0.02; 0.2, -0.01 * j; 0.03, 0.7 - 0.1 * j; 0.01, 0.3],
+        innovation_covariance: matrix![3000.0 + 500.0 * j, 60.0; 60.0, 900.0 - 100.0 * j],
+    };
+    scene.problem.fixed_gains = Some([0.0, 1.0, 2.0].map(given).to_vec());
+    scene.equations = Equations::fixed_gain();
+    for estimate in &mut scene.initial.modes {
+        estimate.covariance.fill(0.0);
+    }
+    scene
 }
 
 /// A scene in which range and bearing are measured from the origin, for filters with the named rule.
@@ -143,6 +159,7 @@ fn problem(measurement: Measurement<f64, 4, 2>, noise: [f64; 2]) -> Problem<f64,
         measurement,
         measurement_noise: SMatrix::from_diagonal(&SVector::from(noise)),
         rule: None,
+        fixed_gains: None,
     }
 }
 

@@ -40,7 +40,7 @@ fn mirrored(draft: Draft, state: [f64; 4], sensor: [f64; 2], bearing: impl Fn(f6
         for estimate in &mut problem.initial.modes {
             let mean = estimate.mean.iter().zip(state);
             estimate.mean = mean.map(|(entry, sign)| entry * sign).collect();
-            estimate.covariance = map(&estimate.covariance, both);
+            estimate.covariance = estimate.covariance.as_ref().map(|rows| map(rows, both));
         }
         if let MeasurementFile::RangeBearing { sensor: place, .. } = &mut problem.measurement {
             *place = [place[0] * sensor[0], place[1] * sensor[1]];
@@ -98,7 +98,10 @@ fn turns() -> Vec<ProblemFile> {
                 problem.noise = covariance(&[9.0, 0.15], &[0.3]);
                 for estimate in &mut problem.initial.modes {
                     estimate.mean = vec![-190.0, -3.0, 72.0, -14.0];
-                    estimate.covariance = map(&estimate.covariance, |_, _, entry| 0.06 * entry);
+                    estimate.covariance = estimate
+                        .covariance
+                        .as_ref()
+                        .map(|rows| map(rows, |_, _, entry| 0.06 * entry));
                 }
             })
             .sees(&[[160.0, -3.05]])
@@ -164,7 +167,8 @@ fn conventions() -> Vec<ProblemFile> {
     let correlated = |draft: Draft| {
         draft.with(|problem| {
             for estimate in &mut problem.initial.modes {
-                estimate.covariance = covariance(&[14.0, 3.0, 11.0, 2.6], &[0.6, -0.55, -0.4, -0.3, -0.45, 0.5]);
+                let correlations = [0.6, -0.55, -0.4, -0.3, -0.45, 0.5];
+                estimate.covariance = Some(covariance(&[14.0, 3.0, 11.0, 2.6], &correlations));
             }
         })
     };

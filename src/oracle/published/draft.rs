@@ -68,7 +68,7 @@ pub(super) fn covariance(deviations: &[f64], correlations: &[f64]) -> Rows {
 pub(super) fn estimate(mean: &[f64], covariance: Rows) -> EstimateFile {
     EstimateFile {
         mean: mean.to_vec(),
-        covariance,
+        covariance: Some(covariance),
     }
 }
 

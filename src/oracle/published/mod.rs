@@ -10,12 +10,14 @@
 //! - `angles`: bearings around ±π, strong curvature, conventions;
 //! - `numbers`: large positions, other units, singular covariances;
 //! - `runs`: the papers' scenarios;
+//! - `fixed_gain`: filters whose gains are given, and the scenario of the paper that has them;
 //! - `rejected`: problems that must be refused.
 
 mod angles;
 mod chain;
 mod draft;
 mod equations;
+mod fixed_gain;
 mod numbers;
 mod rejected;
 mod rules;
@@ -37,6 +39,7 @@ pub fn all() -> Vec<ProblemFile> {
         angles::all(),
         numbers::all(),
         runs::all(),
+        fixed_gain::all(),
     ]
     .concat()
 }
@@ -47,7 +50,7 @@ pub fn rejected() -> Vec<Rejected> {
 }
 
 /// Every flag, and what a problem with it is like.
-pub const FLAGS: [(&str, &str); 42] = [
+pub const FLAGS: [(&str, &str); 44] = [
     (
         "single-equation",
         "All is trivial but one equation, or one group of them.",
@@ -149,5 +152,10 @@ pub const FLAGS: [(&str, &str); 42] = [
     ("units", "Numbers are very large or very small."),
     ("nearly-singular", "A covariance is nearly singular."),
     ("singular-noise", "The process noise is singular, which it may be."),
+    (
+        "fixed-gain",
+        "Gains and innovation covariances are given, and there is no covariance of the state.",
+    ),
+    ("embedded", "A motion sets an entry of the state to zero."),
     ("rejected", "It must be refused."),
 ];

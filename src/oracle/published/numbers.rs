@@ -79,7 +79,7 @@ fn scaled(draft: Draft, state: [f64; 4], measured: f64) -> Draft {
         for estimate in &mut problem.initial.modes {
             let mean = estimate.mean.iter().zip(state);
             estimate.mean = mean.map(|(entry, factor)| rounded(entry * factor)).collect();
-            estimate.covariance = map(&estimate.covariance, product);
+            estimate.covariance = estimate.covariance.as_ref().map(|rows| map(rows, product));
         }
         if let MeasurementFile::Linear { matrix } = &mut problem.measurement {
             *matrix = map(matrix, |_, column, entry| entry * (measured / state[column]));

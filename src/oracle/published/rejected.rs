@@ -4,16 +4,17 @@
 //! so that a program that refuses it refuses it for that.
 
 use super::draft::Draft;
+use super::fixed_gain::plane_with_gains;
 use super::scene::{plane, radar};
 use crate::oracle::invalid::Class;
-use crate::oracle::problem::{FilterFile, MeasurementFile, ProblemFile};
+use crate::oracle::problem::{FilterFile, FixedGainFile, MeasurementFile, ProblemFile};
 
 /// A problem, the class of the reason for which it must be refused, and the reason.
 pub type Rejected = (ProblemFile, Class, &'static str);
 
 /// The problems of this file.
 pub(super) fn all() -> Vec<Rejected> {
-    [shapes(), probabilities(), covariances(), unknown()].concat()
+    [shapes(), probabilities(), covariances(), unknown(), fixed_gains()].concat()
 }
 
 /// step.n4-m2.two-modes with a change.
@@ -24,6 +25,21 @@ fn linear(id: &str, class: Class, reason: &'static str, change: impl FnOnce(&mut
 /// step.cubature-5 with a change.
 fn polar(id: &str, class: Class, reason: &'static str, change: impl FnOnce(&mut ProblemFile)) -> Rejected {
     refused(radar("cubature-5"), "step.cubature-5", id, class, reason, change)
+}
+
+/// step.fixed-gain with a change of what is given, or of the reading.
+fn fixed(
+    id: &str,
+    class: Class,
+    reason: &'static str,
+    change: impl FnOnce(&mut String, &mut Vec<FixedGainFile>),
+) -> Rejected {
+    let change = |problem: &mut ProblemFile| {
+        if let FilterFile::FixedGain { mixing, modes } = &mut problem.filter {
+            change(mixing, modes);
+        }
+    };
+    refused(plane_with_gains("mixed"), "step.fixed-gain", id, class, reason, change)
 }
 
 fn refused(
@@ -85,7 +101,11 @@ fn covariances() -> Vec<Rejected> {
             "rejected.symmetric.initial",
             Class::NotSymmetric,
             "an initial covariance has one entry that its mirror image has not",
-            |problem| problem.initial.modes[1].covariance[0][2] += 0.5,
+            |problem| {
+                if let Some(covariance) = &mut problem.initial.modes[1].covariance {
+                    covariance[0][2] += 0.5;
+                }
+            },
         ),
         linear(
             "rejected.symmetric.noise",
@@ -97,7 +117,11 @@ fn covariances() -> Vec<Rejected> {
             "rejected.definite.initial",
             Class::NotPositiveDefinite,
             "an initial covariance has a variance that is too small for its correlations",
-            |problem| problem.initial.modes[0].covariance[1][1] = 0.25,
+            |problem| {
+                if let Some(covariance) = &mut problem.initial.modes[0].covariance {
+                    covariance[1][1] = 0.25;
+                }
+            },
         ),
         linear(
             "rejected.definite.process-noise",
@@ -141,6 +165,49 @@ fn unknown() -> Vec<Rejected> {
             Class::Angle,
             "its bearing is in degrees",
             |problem| problem.measurements[0].z = Some(vec![207.0, -23.5]),
+        ),
+    ]
+}
+
+fn fixed_gains() -> Vec<Rejected> {
+    vec![
+        fixed(
+            "rejected.shape.gain",
+            Class::Shape,
+            "the second gain has two rows of four entries where four of two are needed",
+            |_, modes| modes[1].gain = vec![vec![0.316, 0.181, -0.077, 0.009], vec![0.1, -0.013, 0.586, 0.158]],
+        ),
+        fixed(
+            "rejected.shape.fixed-gains",
+            Class::Shape,
+            "there are gains for two of three modes",
+            |_, modes| modes.truncate(2),
+        ),
+        fixed(
+            "rejected.symmetric.innovation",
+            Class::NotSymmetric,
+            "the last innovation covariance is not symmetric",
+            |_, modes| modes[2].innovation_covariance[0][1] = 34.0,
+        ),
+        fixed(
+            "rejected.definite.innovation",
+            Class::NotPositiveDefinite,
+            "the first innovation covariance has a variance that is too small for its covariance",
+            |_, modes| modes[0].innovation_covariance[1][1] = 6.0,
+        ),
+        fixed(
+            "rejected.unknown.mixing",
+            Class::Unknown,
+            "its reading of the update, half-mixed, does not exist",
+            |mixing, _| "half-mixed".clone_into(mixing),
+        ),
+        refused(
+            plane_with_gains("mixed"),
+            "step.fixed-gain",
+            "rejected.format.covariance",
+            Class::Format,
+            "an estimate has a covariance, which filters with fixed gains do not have",
+            |problem| problem.initial.modes[0] = plane().0.initial.modes[0].clone(),
         ),
     ]
 }

@@ -121,7 +121,7 @@ fn components() -> Vec<ProblemFile> {
                 }
                 for estimate in &mut problem.initial.modes {
                     estimate.mean.reverse();
-                    estimate.covariance = reordered(&estimate.covariance);
+                    estimate.covariance = estimate.covariance.as_ref().map(reordered);
                 }
                 if let MeasurementFile::RangeBearing { position, .. } = &mut problem.measurement {
                     *position = [3, 1];

@@ -5,7 +5,7 @@
 use super::super::setup::Setup;
 use super::{draws_points, number, square_root, weights};
 use crate::gaussian::log_density;
-use crate::imm::Equations;
+use crate::imm::{Equations, Problem, Step};
 use crate::matrix::ldl;
 use crate::number::Real;
 use nalgebra::SVector;
@@ -52,11 +52,9 @@ pub(super) fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &m
                 }
                 (Equations::standard(problem).predicted_mode_probability)(problem, previous, now, j)
             };
-            equations.mixing_probability = |problem, previous, now, j, i| match (now.step, i == j) {
-                (1, true) => T::one(),
-                (1, false) => T::zero(),
-                _ => (Equations::standard(problem).mixing_probability)(problem, previous, now, j, i),
-            };
+            if equations.mixes {
+                equations.mixing_probability = mixed_from_the_second_step;
+            }
         }
         // ln L + (m/2) ln 2π
         "log-likelihood-without-two-pi" => {
@@ -69,6 +67,21 @@ pub(super) fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &m
         _ => return false,
     }
     true
+}
+
+/// μᵢ∣ⱼ, at step 1 of modes that keep what they have.
+fn mixed_from_the_second_step<T: Real, const N: usize, const M: usize>(
+    problem: &Problem<T, N, M>,
+    previous: &Step<T, N, M>,
+    now: &Step<T, N, M>,
+    j: usize,
+    i: usize,
+) -> T {
+    match (now.step, i == j) {
+        (1, true) => T::one(),
+        (1, false) => T::zero(),
+        _ => (Equations::standard(problem).mixing_probability)(problem, previous, now, j, i),
+    }
 }
 
 /// The direction of the weighted sum of unit vectors.

@@ -19,6 +19,7 @@
 //! | `combination`   | combined estimates                                                   |
 //! | `convention`    | choices that the papers leave open                                   |
 //! | `square_root`   | of these the square root of a covariance                             |
+//! | `fixed_gain`    | what is given to filters with fixed gains, and their two readings    |
 //! | `form`          | other algebra for the same exact value                               |
 //!
 //! An entry computes its value from the values that stand before it in the record, as the program that makes the mistake would: so it can
@@ -27,6 +28,7 @@
 mod bearing;
 mod combination;
 mod convention;
+mod fixed_gain;
 mod form;
 mod input;
 mod likelihood;
@@ -81,6 +83,14 @@ pub enum Applies {
     Points,
     /// In Kalman filters.
     Kalman,
+    /// In filters that carry covariances.
+    Covariances,
+    /// In filters with fixed gains.
+    #[serde(rename = "fixed gains")]
+    FixedGains,
+    /// Where a motion sets an entry of the state to zero.
+    #[serde(rename = "embedded motion")]
+    EmbeddedMotion,
     /// Where a bearing is measured.
     Angles,
     /// Where a detection is missing.
@@ -97,7 +107,13 @@ impl Applies {
         match self {
             Self::All => true,
             Self::Points => problem.rule.is_some(),
-            Self::Kalman => problem.rule.is_none(),
+            Self::Kalman => problem.rule.is_none() && problem.fixed_gains.is_none(),
+            Self::Covariances => problem.fixed_gains.is_none(),
+            Self::FixedGains => problem.fixed_gains.is_some(),
+            Self::EmbeddedMotion => problem
+                .modes
+                .iter()
+                .any(|mode| zero_rows(&mode.transition).next().is_some()),
             Self::Angles => (0..M).any(|row| problem.measurement.is_angle(row)),
             Self::Missed => setup.measurements.iter().any(Option::is_none),
             Self::SeveralModes => problem.modes.len() > 1,
@@ -130,6 +146,19 @@ pub struct Variant {
     pub convention: Option<String>,
     /// Of a convention: the value of that key.
     pub value: Option<String>,
+}
+
+impl Variant {
+    /// Whether it can make a difference here. Where it cannot, the variant leaves every value as it is.
+    pub fn applies_to<T: Real, const N: usize, const M: usize>(&self, setup: &Setup<T, N, M>) -> bool {
+        let exists = setup.equations.keeps_covariances || !self.needs_covariances();
+        exists && self.applies.to(setup)
+    }
+
+    /// Whether it has no meaning where there are no covariances.
+    fn needs_covariances(&self) -> bool {
+        matches!(self.applies, Applies::Kalman | Applies::Covariances) || self.quantity.needs_covariances()
+    }
 }
 
 /// A quantity by its name.
@@ -167,8 +196,12 @@ pub fn find(id: &str) -> Option<&'static Variant> {
     catalogue().iter().find(|variant| variant.id == id)
 }
 
-/// Makes a run one of a variant; whether there is one of this name. Several may be applied, one after the other.
+/// Makes a run one of a variant; whether there is one of this name. Several may be applied, one after the other. What has no meaning
+/// without covariances leaves filters that carry none as they are.
 pub fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+    if !setup.equations.keeps_covariances && find(id).is_some_and(Variant::needs_covariances) {
+        return true;
+    }
     input::apply(id, setup)
         || mixing::apply(id, setup)
         || prediction::apply(id, setup)
@@ -181,12 +214,19 @@ pub fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setu
         || probability::apply(id, setup)
         || combination::apply(id, setup)
         || convention::apply(id, setup)
+        || fixed_gain::apply(id, setup)
         || form::apply(id, setup)
 }
 
 /// Whether the filter draws points.
 fn draws_points<T, const N: usize, const M: usize>(setup: &Setup<T, N, M>) -> bool {
     setup.problem.rule.is_some()
+}
+
+/// The rows of a motion that are zero: it sets these entries of the state to zero, as constant velocity does where the state has an
+/// acceleration.
+fn zero_rows<T: Real, const N: usize>(motion: &SMatrix<T, N, N>) -> impl Iterator<Item = usize> + use<'_, T, N> {
+    (0..N).filter(|&row| motion.row(row).iter().all(T::is_zero))
 }
 
 /// Whether the measurement is a matrix times the state.

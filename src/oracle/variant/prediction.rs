@@ -3,7 +3,7 @@
 //! After this file the reader knows the mistakes that can be made in F P Fᵀ + Q.
 
 use super::super::setup::Setup;
-use super::{draws_points, sum_of_covariance_weights, weights};
+use super::{draws_points, sum_of_covariance_weights, weights, zero_rows};
 use crate::filter::{cubature, kalman, raw};
 use crate::imm::Equations;
 use crate::matrix::mirrored;
@@ -82,6 +82,15 @@ fn of_mean<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<
             equations.predicted_mean = |problem, previous, now, j| {
                 let once = (Equations::standard(problem).predicted_mean)(problem, previous, now, j);
                 kalman::predicted_mean(&problem.modes[j].transition, &once)
+            }
+        }
+        // Fᵢᵢ = 1 where the row i of F is zero
+        "embedded-entries-kept" => {
+            for mode in &mut setup.problem.modes {
+                let rows: Vec<usize> = zero_rows(&mode.transition).collect();
+                for row in rows {
+                    mode.transition[(row, row)] = T::one();
+                }
             }
         }
         "motion-of-the-next-mode" => rotate_motions(setup),

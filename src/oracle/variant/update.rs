@@ -24,10 +24,16 @@ fn of_gain<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<
         // derbez2000 (2) as printed: P⁰ʲ Hᵀ (H P⁰ʲ Hᵀ + R)⁻¹
         "gain-of-mixed-covariance" => {
             if !points {
-                *entry = |problem, _, now, j| {
-                    let (h, covariance) = (problem.measurement.matrix(), &now.mixed[j].covariance);
-                    let s = kalman::innovation_covariance(&h, covariance, &problem.measurement_noise);
-                    gain(&kalman::cross_covariance(covariance, &h), &s)
+                *entry = gain_of_mixed;
+            }
+        }
+        // derbez2000 (2) as printed: that gain, and (I − K H) P⁰ʲ
+        "update-from-the-mixed-covariance" => {
+            if !points {
+                setup.equations.gain = gain_of_mixed;
+                setup.equations.updated_covariance = |problem, _, now, j| {
+                    let rest = SMatrix::identity() - &now.gains[j] * problem.measurement.matrix();
+                    rest * &now.mixed[j].covariance
                 }
             }
         }
@@ -153,6 +159,18 @@ fn joseph<T: Real, const N: usize, const M: usize>(
     let noise = &problem.measurement_noise * (times.clone() - T::one());
     let s = &now.innovation_covariances[j] + noise;
     mirrored(&now.predicted[j].covariance - w * c.transpose() - c * w.transpose() + w * s * w.transpose())
+}
+
+/// P⁰ʲ Hᵀ (H P⁰ʲ Hᵀ + R)⁻¹.
+fn gain_of_mixed<T: Real, const N: usize, const M: usize>(
+    problem: &Problem<T, N, M>,
+    _: &Step<T, N, M>,
+    now: &Step<T, N, M>,
+    j: usize,
+) -> Factored<T, N, M> {
+    let (h, covariance) = (problem.measurement.matrix(), &now.mixed[j].covariance);
+    let s = kalman::innovation_covariance(&h, covariance, &problem.measurement_noise);
+    gain(&kalman::cross_covariance(covariance, &h), &s)
 }
 
 /// C S⁻¹ with an S that must be positive definite.

@@ -173,6 +173,7 @@ fn problem(deviations: &Vector2<f64>) -> Problem<f64, 4, 2> {
         measurement: measurement(),
         measurement_noise: Matrix2::from_diagonal(&deviations.map(|deviation| deviation * deviation)),
         rule: None,
+        fixed_gains: None,
     }
 }
 

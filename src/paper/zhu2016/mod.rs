@@ -187,6 +187,7 @@ impl Builder {
             measurement: self.measurement.clone(),
             measurement_noise: nalgebra::Matrix2::from_diagonal(&variances),
             rule: None,
+            fixed_gains: None,
         }
     }
 

@@ -1,0 +1,37 @@
+//! The fixed-gain filter: its gain is a number of the problem and not of the data.
+//!
+//! After this file the reader knows what is left of a mode's filter once its covariances are gone: two constant matrices, one that
+//! corrects the prediction and one that says how likely a residual is.
+
+use nalgebra::SMatrix;
+
+/// Gain and innovation covariance of one mode, both constant.
+///
+/// Source: derbez2000, section 3, not numbered.
+///
+/// ```text
+/// x̂ = F x̂⁰ + K (z − H F x̂⁰)          ln L = ln N(z − H F x̂⁰; 0, S)
+/// ```
+///
+/// | paper   | here                    | shape | meaning                                                   |
+/// |---------|-------------------------|-------|-----------------------------------------------------------|
+/// | K∞      | `gain`                  | N × M | units of the state over units of the measurement           |
+/// | S       | `innovation_covariance` | M × M | H P⁻ Hᵀ + R, derbez2000 (4), symmetric positive definite   |
+/// | x̂⁰      |                         | N     | what the prediction starts from                            |
+///
+/// Why: the covariances of a Kalman filter do not depend on what is measured. With constant F, H, Q and R they tend to the equilibrium P⁻
+/// of a Riccati equation, and K = P⁻ Hᵀ S⁻¹ with them. A filter that has K and S from the start needs no covariance at all, which is
+/// most of the arithmetic. Nothing here asks that they are of that origin.
+///
+/// Errata: the update is printed without the superscript 0 of the mixed state, although "one proceeds with the usual IMM algorithm".
+/// Both readings exist and are kept apart: [`Equations::fixed_gain`](crate::imm::Equations::fixed_gain) and
+/// [`Equations::fixed_gain_unmixed`](crate::imm::Equations::fixed_gain_unmixed).
+///
+/// Evidence: `a_kalman_filter_at_its_equilibrium_is_the_fixed_gain_filter` (exact).
+#[derive(Debug, Clone, PartialEq)]
+pub struct FixedGain<T, const N: usize, const M: usize> {
+    /// K.
+    pub gain: SMatrix<T, N, M>,
+    /// S.
+    pub innovation_covariance: SMatrix<T, M, M>,
+}

@@ -1,0 +1,181 @@
+//! The three filters of the comparison, for either coordinate.
+//!
+//! After this file the reader knows each of them by what it is made of: the two motions, their noises, a chain, and for the third the
+//! steady gains of both.
+//!
+//! ```text
+//! IMM          constant velocity and constant acceleration, Kalman filters
+//! Fixed Gain   the same with the gains that each would end with alone
+//! CA           one Kalman filter of constant acceleration
+//! ```
+
+use super::path::Path;
+use super::radar::converted_variances;
+use super::scenario::{Contestant, Coordinates};
+use super::{INITIAL_PROBABILITIES, MEASUREMENT_VARIANCES, TRANSITION};
+use crate::filter::fixed_gain::FixedGain;
+use crate::imm::{Equations, Problem};
+use crate::model::Measurement;
+use crate::model::acceleration::{
+    acceleration_response, constant_acceleration, embedded_constant_velocity, embedded_velocity_response,
+    position_matrix, response_noise,
+};
+use crate::model::motion::Mode;
+use crate::steady::gains;
+use nalgebra::{Matrix1, Vector2, Vector3};
+
+/// From what the fixed-gain filters start. Un-mixed filters stand alone, and each is stable as its gain is; mixed ones feed each other,
+/// and are not judged one by one.
+///
+/// Evidence: `frozen_probabilities_are_not_judged_by_the_averaged_matrices` (exact).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reading {
+    /// From mixed estimates, as in the usual IMM algorithm.
+    Mixed,
+    /// Each from its own estimate, as the update is printed.
+    Unmixed,
+}
+
+/// R of a coordinate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Noise {
+    /// The mean over the true path of the converted measurement's variance, for all filters.
+    MeanOverThePath,
+    /// That of each converted measurement for the Kalman filters, the mean for the fixed gains.
+    OfEachMeasurement,
+    /// A number, for all filters, m².
+    Constant(f64),
+}
+
+/// What the filters are told.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Setup {
+    /// t, s.
+    pub interval: f64,
+    /// From what the fixed-gain filters start.
+    pub reading: Reading,
+    /// q of both modes, (m/s²)².
+    pub noise_variance: f64,
+    /// R.
+    pub noise: Noise,
+    /// The variance of each entry of the Kalman filters' state at step 0.
+    pub initial_variance: f64,
+}
+
+impl Setup {
+    /// The paper's three filters, in the order of its tables.
+    pub fn contestants(&self, path: &Path) -> Vec<Contestant> {
+        let variances = self.measurement_variances(path);
+        vec![self.imm(variances), self.fixed_gain(variances), self.single(variances)]
+    }
+
+    /// The full IMM filter.
+    pub fn imm(&self, variances: [f64; 2]) -> Contestant {
+        Contestant {
+            name: "IMM".to_owned(),
+            coordinates: Coordinates::Cartesian,
+            problems: variances.map(|variance| self.problem(variance)),
+            equations: Equations::kalman(),
+            initial_probabilities: INITIAL_PROBABILITIES.to_vec(),
+            initial_variance: self.initial_variance,
+            follows_noise: self.noise == Noise::OfEachMeasurement,
+        }
+    }
+
+    /// The IMM filter with fixed gains.
+    pub fn fixed_gain(&self, variances: [f64; 2]) -> Contestant {
+        Contestant {
+            name: "Fixed Gain".to_owned(),
+            problems: variances.map(|variance| Problem {
+                fixed_gains: Some(self.steady_gains(variance)),
+                ..self.problem(variance)
+            }),
+            equations: match self.reading {
+                Reading::Mixed => Equations::fixed_gain(),
+                Reading::Unmixed => Equations::fixed_gain_unmixed(),
+            },
+            initial_variance: 0.0,
+            follows_noise: false,
+            ..self.imm(variances)
+        }
+    }
+
+    /// The Kalman filter of constant acceleration.
+    pub fn single(&self, variances: [f64; 2]) -> Contestant {
+        let imm = self.imm(variances);
+        Contestant {
+            name: "CA".to_owned(),
+            problems: imm.problems.clone().map(|problem| Problem {
+                modes: problem.modes[1..].to_vec(),
+                transition: vec![vec![1.0]],
+                ..problem
+            }),
+            initial_probabilities: vec![1.0],
+            ..imm
+        }
+    }
+
+    /// R of either coordinate, where it is constant.
+    pub fn measurement_variances(&self, path: &Path) -> [f64; 2] {
+        if let Noise::Constant(variance) = self.noise {
+            return [variance; 2];
+        }
+        let at = |place: &[Vector3<f64>; 2]| {
+            Vector2::from(converted_variances(
+                Vector2::new(place[0][0], place[1][0]),
+                MEASUREMENT_VARIANCES,
+            ))
+        };
+        let sum: Vector2<f64> = path.places.iter().map(at).sum();
+        (sum / path.places.len() as f64).into()
+    }
+
+    /// Both modes of one coordinate, constant velocity first.
+    fn problem(&self, measurement_variance: f64) -> Problem<f64, 3, 1> {
+        let mode = |name: &str, transition, response| Mode {
+            name: name.to_owned(),
+            transition,
+            noise: response_noise(&response, &self.noise_variance),
+        };
+        let t = &self.interval;
+        Problem {
+            modes: vec![
+                mode(
+                    "constant velocity",
+                    embedded_constant_velocity(t),
+                    embedded_velocity_response(t),
+                ),
+                mode(
+                    "constant acceleration",
+                    constant_acceleration(t),
+                    acceleration_response(t),
+                ),
+            ],
+            transition: TRANSITION.iter().map(|row| row.to_vec()).collect(),
+            measurement: Measurement::Linear(position_matrix()),
+            measurement_noise: Matrix1::new(measurement_variance),
+            rule: None,
+            fixed_gains: None,
+        }
+    }
+
+    /// The steady gain and innovation variance of either mode.
+    ///
+    /// Evidence: `the_fixed_gains_are_those_with_which_the_kalman_filters_end`.
+    fn steady_gains(&self, measurement_variance: f64) -> Vec<FixedGain<f64, 3, 1>> {
+        let index = gains::tracking_index(&self.noise_variance, &measurement_variance, &self.interval);
+        let of_velocity = gains::alpha_beta_root(&index);
+        let of_acceleration = gains::alpha_beta_gamma_root(&index);
+        let fixed = |gain, root| FixedGain {
+            gain,
+            innovation_covariance: Matrix1::new(gains::innovation_variance(root, &measurement_variance)),
+        };
+        vec![
+            fixed(gains::alpha_beta_gain(&of_velocity, &self.interval), &of_velocity),
+            fixed(
+                gains::alpha_beta_gamma_gain(&of_acceleration, &self.interval),
+                &of_acceleration,
+            ),
+        ]
+    }
+}

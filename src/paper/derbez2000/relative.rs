@@ -1,0 +1,146 @@
+//! Errors of one filter as a part of another's, under everything that the paper leaves open.
+//!
+//! After this file the reader knows how a claim about filters is judged whose configuration was not published: in each configuration it is
+//! certainly true, certainly false, or neither, and the verdict says whether what was left open decides.
+
+use super::claims::Runs;
+use super::path::Motion;
+use crate::paper::result::Quantity;
+use crate::paper::verdict::{DECISIVE, Verdict};
+use crate::statistics::Estimate;
+use crate::statistics::estimate::figure;
+
+/// A difference as a part of the second filter's error.
+#[derive(Debug, Clone)]
+pub struct Relative {
+    /// The choices of the configuration.
+    pub choices: String,
+    /// The part.
+    pub difference: Estimate,
+}
+
+impl Relative {
+    /// The certain bounds of the part.
+    pub fn bounds(&self) -> (f64, f64) {
+        let certainty = DECISIVE * self.difference.standard_error;
+        (self.difference.value - certainty, self.difference.value + certainty)
+    }
+
+    /// The part in per cent, in words.
+    pub fn words(&self) -> String {
+        let (value, error) = (100.0 * self.difference.value, 100.0 * self.difference.standard_error);
+        format!("{} ± {} % ({})", figure(value), figure(error), self.choices)
+    }
+}
+
+/// The error of filter `a` less that of `b`, as a part of the latter, in each experiment, over the steps that are chosen.
+pub fn relative(
+    experiments: &[Runs],
+    [a, b]: [usize; 2],
+    quantity: Quantity,
+    chosen: fn(Motion) -> bool,
+) -> Vec<Relative> {
+    let of_experiment = |experiment: &Runs| {
+        let motions = &experiment.scenario.path.motions;
+        let steps = |k: usize| chosen(motions[k]);
+        let comparison = experiment.comparison();
+        let error = comparison.error_over(b, quantity, &steps).value;
+        let difference = comparison.difference_over(a, b, quantity, &steps);
+        Relative {
+            choices: experiment.scenario.choices.describe(),
+            difference: Estimate {
+                value: difference.value / error,
+                standard_error: difference.standard_error / error,
+            },
+        }
+    };
+    experiments.iter().map(of_experiment).collect()
+}
+
+/// The first, which is at the defaults, and the least and the greatest of all, in words.
+pub fn extremes(all: &[Relative]) -> String {
+    let by_value = |a: &&Relative, b: &&Relative| a.difference.value.total_cmp(&b.difference.value);
+    let (least, greatest) = (all.iter().min_by(by_value), all.iter().max_by(by_value));
+    match (all.first(), least, greatest) {
+        (Some(first), Some(least), Some(greatest)) => format!(
+            "{}; from {} to {} over {} configurations",
+            first.words(),
+            least.words(),
+            greatest.words(),
+            all.len()
+        ),
+        _ => String::new(),
+    }
+}
+
+/// How a claim fares under what the paper leaves open, by number of configurations.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Certainly true.
+    pub holds: usize,
+    /// Certainly false.
+    pub fails: usize,
+    /// Neither is certain.
+    pub neither: usize,
+}
+
+impl Tally {
+    /// "The first's error is another by less than `limit`", as a part of the second's.
+    pub fn within(all: &[Relative], limit: f64) -> Self {
+        Self::of(all.iter().map(|relative| match relative.bounds() {
+            (low, high) if -limit < low && high < limit => Some(true),
+            (low, high) if high < -limit || limit < low => Some(false),
+            _ => None,
+        }))
+    }
+
+    /// "The first's error is larger by less than `limit`", or, with a negative one, smaller by more than its amount.
+    pub fn below(all: &[Relative], limit: f64) -> Self {
+        Self::of(all.iter().map(|relative| match relative.bounds() {
+            (_, high) if high < limit => Some(true),
+            (low, _) if limit < low => Some(false),
+            _ => None,
+        }))
+    }
+
+    fn of(answers: impl Iterator<Item = Option<bool>>) -> Self {
+        let mut tally = Self::default();
+        for answer in answers {
+            match answer {
+                Some(true) => tally.holds += 1,
+                Some(false) => tally.fails += 1,
+                None => tally.neither += 1,
+            }
+        }
+        tally
+    }
+
+    /// Both, of different configurations or filters.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            holds: self.holds + other.holds,
+            fails: self.fails + other.fails,
+            neither: self.neither + other.neither,
+        }
+    }
+
+    /// Confirmed or refuted when it is so in every configuration; not reproducible where it is so in some and not in others, so that what
+    /// was not published decides.
+    pub fn verdict(self) -> Verdict {
+        match (self.holds, self.fails, self.neither) {
+            (_, 0, 0) => Verdict::Confirmed,
+            (0, _, 0) => Verdict::Refuted,
+            (0, ..) | (_, 0, _) => Verdict::Undecided,
+            _ => Verdict::NotReproducible,
+        }
+    }
+
+    /// The numbers in words.
+    pub fn words(self) -> String {
+        format!(
+            "True {} times, false {} times, uncertain {} times.",
+            self.holds, self.fails, self.neither
+        )
+    }
+}

@@ -1,0 +1,359 @@
+//! A scenario of derbez2000 with every choice made, and a run of it.
+//!
+//! After this file the reader knows what is unlike the other papers: each coordinate has a filter of its own, with mode probabilities of
+//! its own, and the two know nothing of each other. What a run keeps of them is in the form of the other papers, errors of
+//! [x, ẋ, y, ẏ], so that the same statistics apply; the error of the acceleration is left out.
+
+use super::contestants::Setup;
+use super::path::{Motion, Path, Place};
+use super::radar::{self, Debiasing};
+use crate::imm::{Equations, Failure, Imm, Initial, Problem, Step};
+use crate::paper::monte_carlo::{Generator, Run};
+use crate::paper::result::Average;
+use crate::paper::simulation::{self, Filter, Simulation};
+use crate::paper::specification::Choices;
+use crate::statistics::consistency::{nees, nis};
+use nalgebra::{Matrix1, Vector1, Vector2, Vector3, Vector4};
+use std::time::{Duration, Instant};
+
+/// What a filter of the comparison filters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Coordinates {
+    /// x and y of the converted measurements.
+    Cartesian,
+    /// Range and bearing themselves; only the output is converted.
+    Polar,
+}
+
+/// A filter of the comparison: two filters of one coordinate each.
+#[derive(Debug, Clone)]
+pub struct Contestant {
+    /// The paper's name for it.
+    pub name: String,
+    /// What it filters.
+    pub coordinates: Coordinates,
+    /// Modes, chain and noises for either coordinate.
+    pub problems: [Problem<f64, 3, 1>; 2],
+    /// Its equations.
+    pub equations: Equations<f64, 3, 1>,
+    /// Mode probabilities at step 0.
+    pub initial_probabilities: Vec<f64>,
+    /// The variance of every coordinate's entries of the state at step 0; zero where there are no covariances.
+    pub initial_variance: f64,
+    /// Whether R is that of each converted measurement; if not, it is the problem's at all steps.
+    pub follows_noise: bool,
+}
+
+/// A scenario with every choice made.
+#[derive(Debug, Clone)]
+pub struct Scenario {
+    /// The choices that differ from the defaults.
+    pub choices: Choices,
+    /// The paper's number of runs.
+    pub runs: usize,
+    /// What the filters are told.
+    pub setup: Setup,
+    /// The truth.
+    pub path: Path,
+    /// The variances of range and bearing, m² and rad².
+    pub variances: [f64; 2],
+    /// How the bias of the converted measurements is taken out.
+    pub debiasing: Debiasing,
+    /// The filters.
+    pub contestants: Vec<Contestant>,
+}
+
+/// One measurement.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Seen {
+    /// Range and bearing, m and rad.
+    pub polar: Vector2<f64>,
+    /// The same as a position, m.
+    pub position: Vector2<f64>,
+}
+
+impl Scenario {
+    /// Draws the measurements of one run: for each step the noise of the range, then that of the bearing.
+    pub fn draw(&self, generator: &mut Generator) -> Vec<Seen> {
+        let deviations = Vector2::from(self.variances.map(f64::sqrt));
+        let factor = self.debiasing.factor(self.variances[1]);
+        let see = |place: &Place| {
+            let noise = deviations.map(|deviation| deviation * generator.standard_normal());
+            let polar = radar::polar(position_of(place)) + noise;
+            Seen {
+                polar,
+                position: radar::position(polar) * factor,
+            }
+        };
+        self.path.places.iter().map(see).collect()
+    }
+
+    /// The measurements of a run.
+    pub fn seen(&self, run: usize, seed: u64) -> Vec<Seen> {
+        let stream = u64::try_from(run).unwrap_or(u64::MAX);
+        self.draw(&mut Generator::new(seed, stream))
+    }
+
+    /// Whether a coordinate (0 for x, 1 for y) is accelerated in each step: what the constant acceleration model is right for.
+    pub fn accelerates(&self, coordinate: usize) -> Vec<bool> {
+        let moves = |(motion, place): (&Motion, &Place)| *motion != Motion::Straight && place[coordinate][2] != 0.0;
+        self.path.motions.iter().zip(&self.path.places).map(moves).collect()
+    }
+}
+
+/// The position of both coordinates.
+fn position_of(place: &Place) -> Vector2<f64> {
+    Vector2::new(place[0][0], place[1][0])
+}
+
+impl Simulation for Scenario {
+    fn paper(&self) -> &'static str {
+        "derbez2000"
+    }
+
+    fn choices(&self) -> &Choices {
+        &self.choices
+    }
+
+    fn runs(&self) -> usize {
+        self.runs
+    }
+
+    fn times(&self) -> Vec<f64> {
+        (1..=self.path.places.len())
+            .map(|k| k as f64 * self.setup.interval)
+            .collect()
+    }
+
+    fn interval(&self) -> f64 {
+        self.setup.interval
+    }
+
+    fn motions(&self) -> Vec<&'static str> {
+        let name = |(x, y): (&bool, &bool)| match (x, y) {
+            (false, false) => "x: constant velocity, y: constant velocity",
+            (true, false) => "x: constant acceleration, y: constant velocity",
+            (false, true) => "x: constant velocity, y: constant acceleration",
+            (true, true) => "x: constant acceleration, y: constant acceleration",
+        };
+        self.accelerates(0).iter().zip(&self.accelerates(1)).map(name).collect()
+    }
+
+    fn average(&self) -> Average {
+        Average::RootMeanSquare
+    }
+
+    /// Three of the state and one measured, in either coordinate.
+    fn components(&self) -> (f64, f64) {
+        (6.0, 2.0)
+    }
+
+    fn filters(&self) -> Vec<Filter> {
+        let filter = |contestant: &Contestant| Filter {
+            name: contestant.name.clone(),
+            modes: mode_names(contestant),
+            points: None,
+        };
+        self.contestants.iter().map(filter).collect()
+    }
+
+    fn one_run(&self, run: usize, seed: u64) -> Vec<Run> {
+        let seen = self.seen(run, seed);
+        let contestants = self.contestants.iter();
+        contestants.map(|contestant| track(self, contestant, &seen)).collect()
+    }
+
+    fn first_path(&self, seed: u64) -> Option<simulation::Path> {
+        Some(simulation::Path {
+            truth: self.path.places.iter().map(position_of).collect(),
+            measured: self.seen(0, seed).iter().map(|seen| seen.position).collect(),
+        })
+    }
+}
+
+/// The names of the modes of both coordinates; one name for a filter of one mode, which has no probabilities to show.
+fn mode_names(contestant: &Contestant) -> Vec<String> {
+    let axes = match contestant.coordinates {
+        Coordinates::Cartesian => ["x", "y"],
+        Coordinates::Polar => ["range", "bearing"],
+    };
+    let modes = &contestant.problems[0].modes;
+    match &modes[..] {
+        [mode] => vec![mode.name.clone()],
+        modes => axes
+            .iter()
+            .flat_map(|axis| modes.iter().map(move |mode| format!("{axis}: {}", mode.name)))
+            .collect(),
+    }
+}
+
+/// One contestant on one run's measurements, to its end or to the first step that cannot be computed.
+pub fn track(scenario: &Scenario, contestant: &Contestant, seen: &[Seen]) -> Run {
+    let mut run = Run {
+        errors: Vec::with_capacity(seen.len()),
+        nees: Vec::with_capacity(seen.len()),
+        nis: Vec::with_capacity(seen.len()),
+        mode_probabilities: Vec::with_capacity(seen.len()),
+        failure: None,
+        time: Duration::ZERO,
+    };
+    let mut keep = |steps: Steps, place: &Place| record(&mut run, contestant, steps, place);
+    let (time, failure) = follow(scenario, contestant, seen, &mut keep);
+    Run { failure, time, ..run }
+}
+
+/// A step of either coordinate.
+pub type Steps<'a> = [&'a Step<f64, 3, 1>; 2];
+
+/// One contestant on one run's measurements: `keep` is shown every step with the truth. The time spent in the filters' steps, and the
+/// step that could not be computed, if there was one.
+pub fn follow(
+    scenario: &Scenario,
+    contestant: &Contestant,
+    seen: &[Seen],
+    keep: &mut dyn FnMut(Steps, &Place),
+) -> (Duration, Option<Failure>) {
+    let start = contestant.coordinates.of(&scenario.path.start);
+    let mut filters = [0, 1].map(|c| {
+        filter(
+            contestant,
+            contestant.problems[c].clone(),
+            &initial(contestant, start[c]),
+        )
+    });
+    let mut time = Duration::ZERO;
+    for (place, seen) in scenario.path.places.iter().zip(seen) {
+        let begin = Instant::now();
+        let step = both_steps(scenario, contestant, &mut filters, seen);
+        time += begin.elapsed();
+        if let Err(failure) = step {
+            return (time, Some(failure));
+        }
+        keep([filters[0].current(), filters[1].current()], place);
+    }
+    (time, None)
+}
+
+/// The estimate at step 0: exact, with the contestant's variance.
+fn initial(contestant: &Contestant, state: Vector3<f64>) -> Initial<f64, 3> {
+    let estimate = crate::gaussian::Gaussian {
+        mean: state,
+        covariance: nalgebra::Matrix3::identity() * contestant.initial_variance,
+    };
+    Initial {
+        modes: vec![estimate; contestant.initial_probabilities.len()],
+        mode_probabilities: contestant.initial_probabilities.clone(),
+    }
+}
+
+/// A filter of one coordinate.
+///
+/// # Panics
+///
+/// When the problem is not valid: the paper's problems are part of the program, and a test runs all of them.
+fn filter(contestant: &Contestant, problem: Problem<f64, 3, 1>, initial: &Initial<f64, 3>) -> Imm<f64, 3, 1> {
+    Imm::new(problem, contestant.equations, initial).expect("the paper's problems are part of the program")
+}
+
+/// A step of both coordinates' filters.
+fn both_steps(
+    scenario: &Scenario,
+    contestant: &Contestant,
+    filters: &mut [Imm<f64, 3, 1>; 2],
+    seen: &Seen,
+) -> Result<(), Failure> {
+    let (measured, noises) = match contestant.coordinates {
+        Coordinates::Cartesian => (
+            seen.position,
+            radar::converted_variances(seen.position, scenario.variances),
+        ),
+        Coordinates::Polar => (seen.polar, scenario.variances),
+    };
+    for c in [0, 1] {
+        if contestant.follows_noise {
+            // The noise is the problem's, so the filter goes on as a new one: its estimates and probabilities are all that a step hands on.
+            let last = filters[c].current();
+            let initial = Initial {
+                modes: last.updated.clone(),
+                mode_probabilities: last.mode_probabilities.clone(),
+            };
+            let problem = Problem {
+                measurement_noise: Matrix1::new(noises[c]),
+                ..contestant.problems[c].clone()
+            };
+            // Not checked again: the covariance of constant velocity is singular from its first step on, as it should be.
+            filters[c] = Imm::unchecked(problem, contestant.equations, &initial);
+        }
+        filters[c].step(Some(&Vector1::new(measured[c])))?;
+    }
+    Ok(())
+}
+
+/// Keeps what the statistics need of a step of both coordinates.
+fn record(run: &mut Run, contestant: &Contestant, steps: Steps, place: &Place) {
+    let truth = contestant.coordinates.of(place);
+    let estimate = contestant
+        .coordinates
+        .back([steps[0].combined.mean, steps[1].combined.mean]);
+    run.errors.push(Vector4::new(
+        estimate[0] - place[0][0],
+        estimate[1] - place[0][1],
+        estimate[2] - place[1][0],
+        estimate[3] - place[1][1],
+    ));
+    run.nees.push((0..2).map(|c| nees(&steps[c].combined, &truth[c])).sum());
+    run.nis.push(steps.iter().filter_map(|step| nis(step)).sum());
+    let probabilities = steps.iter().flat_map(|step| step.mode_probabilities.iter().copied());
+    let shown = if contestant.problems[0].modes.len() == 1 {
+        1
+    } else {
+        usize::MAX
+    };
+    run.mode_probabilities.push(probabilities.take(shown).collect());
+}
+
+impl Coordinates {
+    /// A place in these coordinates, [r, ṙ, r̈] and [θ, θ̇, θ̈] for polar ones.
+    ///
+    /// ```text
+    /// ṙ = (x ẋ + y ẏ)/r,   r θ̇ = (x ẏ − y ẋ)/r,   r̈ = (x ẍ + y ÿ)/r + r θ̇²,   r θ̈ = (x ÿ − y ẍ)/r − 2 ṙ θ̇
+    /// ```
+    ///
+    /// Source: the accelerations along and across the line of sight, r̈ − r θ̇² and r θ̈ + 2 ṙ θ̇.
+    ///
+    /// Evidence: `range_and_bearing_move_as_their_derivatives_say`.
+    pub fn of(self, place: &Place) -> Place {
+        if self == Self::Cartesian {
+            return *place;
+        }
+        let [x, y] = place;
+        let polar = radar::polar(position_of(place));
+        let r = polar[0];
+        let along = |i: usize| (x[0] * x[i] + y[0] * y[i]) / r;
+        let across = |i: usize| (x[0] * y[i] - y[0] * x[i]) / r;
+        let (range_rate, bearing_rate) = (along(1), across(1) / r);
+        [
+            Vector3::new(r, range_rate, along(2) + r * bearing_rate * bearing_rate),
+            Vector3::new(
+                polar[1],
+                bearing_rate,
+                (across(2) - 2.0 * range_rate * bearing_rate) / r,
+            ),
+        ]
+    }
+
+    /// Position and velocity [x, ẋ, y, ẏ] of estimates in these coordinates.
+    fn back(self, [first, second]: Place) -> Vector4<f64> {
+        if self == Self::Cartesian {
+            return Vector4::new(first[0], first[1], second[0], second[1]);
+        }
+        let direction = radar::position(Vector2::new(1.0, second[0]));
+        let (r, range_rate, across) = (first[0], first[1], first[0] * second[1]);
+        Vector4::new(
+            r * direction[0],
+            range_rate * direction[0] - across * direction[1],
+            r * direction[1],
+            range_rate * direction[1] + across * direction[0],
+        )
+    }
+}

@@ -1,0 +1,59 @@
+//! What can be run, and what the statistics ask about it.
+//!
+//! After this file the reader knows how little the comparison of filters needs of a paper's scenario: names and times, what the target
+//! does when, and a run whose result depends on its number and the seed alone. [`Scenario`](super::scenario::Scenario) is the one that
+//! two papers share; a paper that is unlike them brings its own.
+
+use super::monte_carlo::Run;
+use super::result::Average;
+use super::specification::Choices;
+use nalgebra::Vector2;
+use std::fmt::Debug;
+
+/// A filter of a simulation, by what is printed about it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Filter {
+    /// The paper's name for it.
+    pub name: String,
+    /// The names of its modes.
+    pub modes: Vec<String>,
+    /// The number of points of its rule, and of those with a weight other than zero; none for a filter without points.
+    pub points: Option<(usize, usize)>,
+}
+
+/// What is true and what is seen in one run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Path {
+    /// The true positions of steps 1, 2, …
+    pub truth: Vec<Vector2<f64>>,
+    /// The measured positions of steps 1, 2, …
+    pub measured: Vec<Vector2<f64>>,
+}
+
+/// A paper's simulation with every choice made.
+pub trait Simulation: Debug + Sync {
+    /// The paper's key.
+    fn paper(&self) -> &'static str;
+    /// The choices that differ from the defaults.
+    fn choices(&self) -> &Choices;
+    /// The paper's number of runs.
+    fn runs(&self) -> usize;
+    /// The times of the steps, s.
+    fn times(&self) -> Vec<f64>;
+    /// The time between two steps, s.
+    fn interval(&self) -> f64;
+    /// The modes that model what the target does in steps 1, 2, …, separated by `, ` where there are several.
+    fn motions(&self) -> Vec<&'static str>;
+    /// How errors at single steps become the figure of a table.
+    fn average(&self) -> Average;
+    /// The numbers of components of the state and of the measurement: what NEES and NIS are expected to be.
+    fn components(&self) -> (f64, f64);
+    /// The filters, in the order of the results.
+    fn filters(&self) -> Vec<Filter>;
+    /// What every filter did in run `run`, counted from 0.
+    fn one_run(&self, run: usize, seed: u64) -> Vec<Run>;
+    /// The first run's truth and measurements, where the paper shows one.
+    fn first_path(&self, _seed: u64) -> Option<Path> {
+        None
+    }
+}
