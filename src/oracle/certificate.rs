@@ -7,7 +7,7 @@
 use super::case::digest;
 use crate::number::Rational;
 use crate::steady::certificate::{Edge, NotProven, Product, Quadratics};
-use crate::steady::verdict::{Filters, LETTERS, Verdict};
+use crate::steady::verdict::{Filters, LETTERS, Verdict, word_text};
 use nalgebra::SMatrix;
 use serde::{Deserialize, Serialize};
 
@@ -161,11 +161,11 @@ impl Noises {
         };
         let t = positive("interval", &self.interval)?;
         let r = positive("measurement", &self.measurement)?;
-        let squared = |q: Rational| q / r.clone() * t.pow(4);
-        Ok(Filters::SquaredIndices([
-            squared(positive("constant-velocity", &self.constant_velocity)?),
-            squared(positive("constant-acceleration", &self.constant_acceleration)?),
-        ]))
+        let noises = [
+            positive("constant-velocity", &self.constant_velocity)?,
+            positive("constant-acceleration", &self.constant_acceleration)?,
+        ];
+        Ok(Filters::of_noises(&t, &r, noises))
     }
 }
 
@@ -272,11 +272,6 @@ impl CertificateFile {
 
 fn digest_of(filters: &FiltersFile, proof: &ProofFile) -> String {
     digest(&format!("{}{}", serde_json::json!(filters), serde_json::json!(proof)))
-}
-
-/// A word in the letters of the filters.
-pub fn word_text(word: &[usize]) -> String {
-    word.iter().map(|&letter| LETTERS[letter]).collect()
 }
 
 fn read_letter(letter: char) -> Result<usize, InvalidCertificate> {

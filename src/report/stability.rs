@@ -5,13 +5,13 @@
 
 use super::{table, wrapped};
 use crate::number::{Enclosure, Field, Rational};
-use crate::oracle::certificate::{CertificateFile, word_text};
+use crate::oracle::certificate::CertificateFile;
 use crate::statistics::estimate::figure;
 use crate::steady::certificate::{Product, Quadratics};
 use crate::steady::gains;
 use crate::steady::map::{Map, greatest_frozen_radius};
 use crate::steady::search::spectral_radius;
-use crate::steady::verdict::{BITS, Filters, LETTERS, Verdict};
+use crate::steady::verdict::{BITS, Filters, LETTERS, Verdict, word_text};
 use nalgebra::SMatrix;
 use serde::Serialize;
 use serde_json::{Value, json};

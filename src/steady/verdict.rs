@@ -59,7 +59,17 @@ impl Default for Depth {
     }
 }
 
+/// A word in the letters of the filters.
+pub fn word_text(word: &[usize]) -> String {
+    word.iter().map(|&letter| LETTERS[letter]).collect()
+}
+
 impl Filters {
+    /// The filters for a scan time t, s, a measurement variance R, m², and the variances q_v and q_a, (m/s²)².
+    pub fn of_noises(interval: &Rational, measurement: &Rational, noises: [Rational; 2]) -> Self {
+        Self::SquaredIndices(noises.map(|q| q / measurement.clone() * interval.pow(4)))
+    }
+
     /// The matrices of the two filters as doubles, for searches.
     pub fn in_doubles(&self) -> [Matrix3<f64>; 2] {
         match self {

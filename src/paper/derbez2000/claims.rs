@@ -9,7 +9,7 @@ use super::contestants::Reading;
 use super::path::{Motion, Place};
 use super::relative::{Relative, Tally, extremes, relative};
 use super::scenario::{Contestant, Coordinates, Scenario, Steps, follow};
-use super::{CLOSEST_POINT, arithmetic, scenario, search};
+use super::{CLOSEST_POINT, arithmetic, scenario, search, stability};
 use crate::imm::Equations;
 use crate::paper::experiment::Experiment;
 use crate::paper::monte_carlo::Progress;
@@ -57,10 +57,10 @@ pub fn judge(effort: Effort, progress: Progress) -> Result<Vec<Judgement>, Inval
         minor_covariance_changes(s, &runs, effort),
         sluggish_onset(s, &runs),
         later("derbez2000-proposition"),
-        later("derbez2000-theorem"),
+        stability::theorem(s),
         later("derbez2000-algorithm-accuracy"),
-        later("derbez2000-stability-matrices"),
-        later("derbez2000-prior-data-discounted"),
+        stability::stability_matrices(s),
+        stability::prior_data_discounted(s),
         arithmetic::moment_matching_bound(s),
         arithmetic::moment_matching_size(s),
         cartesian_filtering(s, effort, progress)?,
@@ -68,11 +68,11 @@ pub fn judge(effort: Effort, progress: Progress) -> Result<Vec<Judgement>, Inval
         thirty_per_cent(s, &runs),
         full_imm_much_better(s, &runs),
         third_set_supports(s, &runs),
-        later("derbez2000-convex-combination"),
-        later("derbez2000-stable-unmixed"),
-        later("derbez2000-stable-mixed"),
-        later("derbez2000-stable-mixed-unequal-noises"),
-        later("derbez2000-local-instability"),
+        stability::convex_combination(s),
+        stability::stable_unmixed(s),
+        stability::stable_mixed(s),
+        stability::stable_mixed_unequal_noises(s),
+        stability::local_instability(s),
         arithmetic::nonlinear_filters(s),
         arithmetic::table_arithmetic(s),
         arithmetic::operation_counts(s),

@@ -9,6 +9,7 @@
 //! - [`contestants`]: the three filters that are compared;
 //! - [`search`]: whether anything that scenario 2 leaves open gives the figures of the published table;
 //! - [`claims`], [`arithmetic`]: the judges of the claims, with runs and without;
+//! - [`stability`], [`instances`]: the judges of the claims on stability, and the small filters that decide them;
 //! - [`relative`]: how a claim is judged whose configuration was not published.
 //!
 //! Scenario 3 uses measurements of another paper that were not published: nothing of it can be run.
@@ -16,11 +17,13 @@
 pub mod arithmetic;
 pub mod claims;
 pub mod contestants;
+pub mod instances;
 pub mod path;
 pub mod radar;
 pub mod relative;
 pub mod scenario;
 pub mod search;
+pub mod stability;
 
 use super::result::Quantity;
 use super::specification::{Choices, InvalidChoice, derbez2000 as specification};
