@@ -8,7 +8,9 @@
 #![allow(clippy::float_cmp)]
 
 use immaculate::matrix::is_finite;
-use immaculate::number::{Enclosure, Field, Polynomial, RandomRounding, Rational, RationalFunction, Real, Roots, Surd};
+use immaculate::number::{
+    Dual, Enclosure, Field, Polynomial, RandomRounding, Rational, RationalFunction, Real, Roots, Surd,
+};
 use nalgebra::{Matrix2, Vector2};
 use num_traits::{One, Zero};
 use proptest::prelude::*;
@@ -208,6 +210,7 @@ fn undecided_is_unequal_to_itself_and_absorbs_every_operation() {
         check_undecided_is_absorbing(&RationalFunction::integer(value));
         check_undecided_is_absorbing(&f64::integer(value));
         check_undecided_is_absorbing(&RandomRounding::integer(value));
+        check_undecided_is_absorbing(&Dual::<Rational>::integer(value));
         Enclosure::with_precision(60, || check_undecided_is_absorbing(&Enclosure::integer(value)));
     }
     check_undecided_is_absorbing(&root(2));
@@ -227,6 +230,7 @@ fn only_a_number_is_decided() {
     }
     law::<f64>();
     law::<RandomRounding>();
+    law::<Dual<Rational>>();
     law::<Rational>();
     law::<Surd>();
     law::<RationalFunction>();
@@ -775,4 +779,85 @@ fn the_square_root_of_a_double_is_the_nearest_one() {
     }
     QuickCheck::new().quickcheck(law as fn(f64) -> bool);
     assert!(Real::sqrt(&-1.0).is_nan());
+}
+
+// Dual numbers
+
+/// Dual numbers over small fractions.
+fn duals() -> impl Strategy<Value = Dual<Rational>> {
+    (rationals(), rationals()).prop_map(|(value, slope)| Dual::new(value, slope))
+}
+
+proptest! {
+    #[test]
+    fn dual_numbers_with_a_value_can_be_divided_by(a in duals(), b in duals(), c in duals()) {
+        // ε and its multiples have no inverse; all else is as in a field.
+        prop_assume!(!b.value().is_zero() || b.slope().is_zero());
+        check_field_axioms(&a, &b, &c)?;
+    }
+
+    #[test]
+    fn the_slope_is_the_limit_of_the_difference_quotient(f in rational_functions_of_x()) {
+        let (x, h) = (RationalFunction::unknown("x"), RationalFunction::unknown("h"));
+        let dual = f.substitute(&[("x", Dual::variable(x.clone()))]);
+        prop_assert_eq!(dual.value(), &f);
+        // h is cancelled from the quotient as a common monomial, so that the limit is the value at h = 0.
+        let moved: RationalFunction = f.substitute(&[("x", &x + &h)]);
+        let quotient = (moved - &f) / h;
+        let limit = quotient.substitute(&[("x", x), ("h", RationalFunction::zero())]);
+        prop_assert!(limit.is_decided());
+        prop_assert_eq!(dual.slope(), &limit);
+    }
+}
+
+#[test]
+fn products_and_quotients_of_dual_numbers_follow_leibniz() {
+    let unknown = RationalFunction::unknown;
+    let (a, b, c, d) = (unknown("a"), unknown("b"), unknown("c"), unknown("d"));
+    let (left, right) = (Dual::new(a.clone(), b.clone()), Dual::new(c.clone(), d.clone()));
+    let epsilon = Dual::new(RationalFunction::zero(), RationalFunction::one());
+    assert_eq!(&left * &right, Dual::new(&a * &c, &a * &d + &b * &c));
+    assert_eq!(&left / &right, Dual::new(&a / &c, (&b * &c - &a * &d) / (&c * &c)));
+    assert!((&epsilon * &epsilon).is_zero() && !epsilon.is_zero());
+    assert!(!Field::is_decided(&(left / epsilon)));
+}
+
+#[test]
+fn elementary_functions_of_dual_numbers_follow_the_chain_rule() {
+    type Function = fn(&Dual<Enclosure>) -> Dual<Enclosure>;
+    // Each with a bound of its second derivative on [0.7, 0.8]; that of x² + 1 over x has the chain rule in both arguments.
+    let functions: [(&str, Function, f64); 7] = [
+        ("sqrt", |x| x.sqrt(), 1.0),
+        ("exp", |x| x.exp(), 3.0),
+        ("ln", |x| x.ln(), 3.0),
+        ("sin", |x| x.sin(), 1.0),
+        ("cos", |x| x.cos(), 1.0),
+        ("atan2", |x| (x * x).atan2(&(x + Dual::one())), 5.0),
+        ("composed", |x| (x.sin() * x).exp().sqrt(), 10.0),
+    ];
+    Enclosure::with_precision(256, || {
+        let x = Enclosure::ratio(3, 4);
+        let h = Enclosure::rational(&power_of_two(-80));
+        for (name, function, second) in functions {
+            let here = function(&Dual::variable(x.clone()));
+            let there = function(&Dual::constant(&x + &h));
+            assert!(there.slope().contains(&Rational::zero()) && there.slope().width() == 0.0, "{name}");
+            // Taylor's remainder: ½ h² sup|f″|.
+            let rest = there.value().clone() - here.value().clone() - here.slope().clone() * h.clone();
+            let remainder = h.clone() * h.clone() * Enclosure::exact(second) / Enclosure::integer(2);
+            assert!(rest < remainder && rest > -remainder, "{name}: {rest}");
+            // And a slope that is off by 2⁻⁷⁰ is refused: the bound is not slack.
+            let off = rest + h.clone() * Enclosure::rational(&power_of_two(-70));
+            assert!(!(off < h.clone() * h.clone() * Enclosure::exact(second)), "{name}");
+        }
+    });
+}
+
+#[test]
+fn an_infinitesimal_is_positive_and_below_every_positive_number() {
+    let dual = |value, slope| Dual::new(Rational::integer(value), Rational::integer(slope));
+    assert!(dual(0, 1) > Dual::zero() && dual(0, -1) < Dual::zero());
+    assert!(dual(0, 1000) < Dual::rational(&power_of_two(-1000)));
+    assert!(dual(2, -7) < dual(2, 7) && dual(2, 7) < dual(3, -7));
+    assert_eq!(dual(2, 1).partial_cmp(&Dual::undecided()), None);
 }

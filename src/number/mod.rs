@@ -14,6 +14,7 @@
 //! | [`RationalFunction`]                  | [`Roots`]                 | identities for all inputs, and for every n      |
 //! | [`Enclosure`]                         | [`Real`]                  | certified digits, and inequalities as theorems  |
 //! | [`RandomRounding`]                    | [`Real`]                  | how much of a difference is only arithmetic     |
+//! | [`Dual`] over another                 | that of the other         | derivatives, proven or certified                |
 //!
 //! Three traits say what an equation needs, and an equation has the weakest bound it can live with:
 //! [`Field`] (+ − × ÷), [`Roots`] (the square roots of rationals, all that cubature points need) and [`Real`]
@@ -23,6 +24,7 @@
 //! panic: it is unequal to everything, itself included, and every operation on it gives it again.
 
 mod decimal;
+mod dual;
 mod enclosure;
 mod float;
 mod operators;
@@ -33,6 +35,7 @@ mod rational;
 mod rational_function;
 mod surd;
 
+pub use dual::Dual;
 pub use enclosure::Enclosure;
 pub use polynomial::Polynomial;
 pub use random_rounding::RandomRounding;
