@@ -9,9 +9,10 @@
 
 use immaculate::matrix::is_finite;
 use immaculate::number::{
-    Dual, Enclosure, Field, Polynomial, RandomRounding, Rational, RationalFunction, Real, Roots, Surd,
+    Convention, Counting, Dual, Enclosure, Field, Polynomial, RandomRounding, Rational, RationalFunction, Real, Roots,
+    Surd,
 };
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::{Matrix2, Matrix3, RowVector3, SMatrix, Vector2, Vector3};
 use num_traits::{One, Zero};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseError;
@@ -210,6 +211,7 @@ fn undecided_is_unequal_to_itself_and_absorbs_every_operation() {
         check_undecided_is_absorbing(&RationalFunction::integer(value));
         check_undecided_is_absorbing(&f64::integer(value));
         check_undecided_is_absorbing(&RandomRounding::integer(value));
+        check_undecided_is_absorbing(&Counting::input(value as f64, Convention::Dense));
         check_undecided_is_absorbing(&Dual::<Rational>::integer(value));
         Enclosure::with_precision(60, || check_undecided_is_absorbing(&Enclosure::integer(value)));
     }
@@ -230,6 +232,7 @@ fn only_a_number_is_decided() {
     }
     law::<f64>();
     law::<RandomRounding>();
+    law::<Counting>();
     law::<Dual<Rational>>();
     law::<Rational>();
     law::<Surd>();
@@ -841,7 +844,10 @@ fn elementary_functions_of_dual_numbers_follow_the_chain_rule() {
         for (name, function, second) in functions {
             let here = function(&Dual::variable(x.clone()));
             let there = function(&Dual::constant(&x + &h));
-            assert!(there.slope().contains(&Rational::zero()) && there.slope().width() == 0.0, "{name}");
+            assert!(
+                there.slope().contains(&Rational::zero()) && there.slope().width() == 0.0,
+                "{name}"
+            );
             // Taylor's remainder: ½ h² sup|f″|.
             let rest = there.value().clone() - here.value().clone() - here.slope().clone() * h.clone();
             let remainder = h.clone() * h.clone() * Enclosure::exact(second) / Enclosure::integer(2);
@@ -860,4 +866,96 @@ fn an_infinitesimal_is_positive_and_below_every_positive_number() {
     assert!(dual(0, 1000) < Dual::rational(&power_of_two(-1000)));
     assert!(dual(2, -7) < dual(2, 7) && dual(2, 7) < dual(3, -7));
     assert_eq!(dual(2, 1).partial_cmp(&Dual::undecided()), None);
+}
+
+// Counting numbers
+
+/// A matrix of inputs, none of which is 0 or 1.
+fn counted<const R: usize, const C: usize>(convention: Convention) -> SMatrix<Counting, R, C> {
+    SMatrix::from_fn(|i, j| Counting::input((2 + i + 7 * j) as f64, convention))
+}
+
+#[test]
+fn a_matrix_product_costs_what_it_costs_on_paper() {
+    fn law<const N: usize, const M: usize, const P: usize>() {
+        let (left, right) = (counted::<N, M>(Convention::Dense), counted::<M, P>(Convention::Dense));
+        let (product, tally) = Counting::count(|| left * right);
+        assert_eq!(tally.multiplications, N * M * P);
+        assert_eq!(tally.additions, N * (M - 1) * P);
+        assert_eq!(tally.first_additions, N * P);
+        assert_eq!(tally.total(Convention::Matlab), 2 * N * M * P);
+        assert_eq!(tally.total(Convention::Dense), N * (2 * M - 1) * P);
+        // And it is the product.
+        let plain = left.map(Counting::value) * right.map(Counting::value);
+        assert_eq!(product.map(Counting::value), plain);
+    }
+    law::<3, 3, 3>();
+    law::<3, 3, 1>();
+    law::<1, 3, 3>();
+    law::<3, 1, 3>();
+    law::<2, 5, 4>();
+    law::<1, 1, 1>();
+    // A product of three, and a sum: 54 + 54 + 9.
+    let a = counted::<3, 3>(Convention::Matlab);
+    let (_, tally) = Counting::count(|| a * a * a.transpose() + a);
+    assert_eq!(tally.total(Convention::Matlab), 117);
+}
+
+#[test]
+fn zeros_and_ones_are_free_only_where_they_are_known() {
+    let identity = |convention| Matrix3::<f64>::identity().map(|entry| Counting::input(entry, convention));
+    let cost = |convention| {
+        let (a, one) = (counted::<3, 3>(convention), identity(convention));
+        Counting::count(|| one * a).1.total(convention)
+    };
+    assert_eq!(Convention::ALL.map(cost), [54, 45, 0]);
+    // F x of constant acceleration with its two ones on the diagonal, two t and a t²/2: 3 products and 3 sums.
+    let f = Matrix3::new(1.0, 2.0, 2.5, 0.0, 1.0, 2.0, 0.0, 0.0, 1.0);
+    let cost = |convention| {
+        let (f, x) = (
+            f.map(|entry| Counting::input(entry, convention)),
+            counted::<3, 1>(convention),
+        );
+        Counting::count(|| f * x).1.total(convention)
+    };
+    assert_eq!(Convention::ALL.map(cost), [18, 15, 6]);
+    // H P Hᵀ with H = [1 0 0] only reads an entry.
+    let h = RowVector3::new(1.0, 0.0, 0.0).map(|entry| Counting::input(entry, Convention::Structural));
+    let p = counted::<3, 3>(Convention::Structural);
+    let (value, tally) = Counting::count(|| h * p * h.transpose());
+    assert_eq!((value[(0, 0)], tally.total(Convention::Structural)), (p[(0, 0)], 0));
+}
+
+#[test]
+fn operations_on_given_numbers_count_one_each() {
+    let (x, y) = (
+        Counting::input(3.0, Convention::Matlab),
+        Counting::input(2.0, Convention::Matlab),
+    );
+    let (_, tally) = Counting::count(|| {
+        let sum = x + y - x * y / y;
+        (sum.sqrt().exp().ln(), (-x).sin().atan2(&y.cos()), x < y)
+    });
+    assert_eq!((tally.additions, tally.multiplications, tally.divisions), (2, 1, 1));
+    assert_eq!((tally.roots, tally.functions, tally.first_additions), (1, 5, 0));
+    assert_eq!(tally.total(Convention::Matlab), 10);
+    // What depends on nothing given is computed once: 2π is free, 2π x is a product.
+    let (_, tally) =
+        Counting::count(|| Counting::pi() * Counting::integer(2) * x + Counting::zero() - Counting::zero());
+    assert_eq!(tally.total(Convention::Dense), 1);
+    // A sum that starts from nothing, as its loop is written.
+    let (sum, tally) = Counting::count(|| [x, y, x].into_iter().fold(Counting::zero(), |sum, value| sum + value));
+    assert_eq!((sum.value(), tally.additions, tally.first_additions), (8.0, 2, 1));
+}
+
+#[test]
+fn an_outer_count_includes_the_inner_one() {
+    let v = counted::<3, 1>(Convention::Matlab);
+    let (inner, outer) = Counting::count(|| {
+        let sum: Vector3<Counting> = v + v;
+        let (_, inner) = Counting::count(|| sum + v);
+        inner
+    });
+    assert_eq!((inner.additions, outer.additions), (3, 6));
+    assert_eq!(Counting::count(|| ()).1.total(Convention::Matlab), 0);
 }

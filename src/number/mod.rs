@@ -14,6 +14,7 @@
 //! | [`RationalFunction`]                  | [`Roots`]                 | identities for all inputs, and for every n      |
 //! | [`Enclosure`]                         | [`Real`]                  | certified digits, and inequalities as theorems  |
 //! | [`RandomRounding`]                    | [`Real`]                  | how much of a difference is only arithmetic     |
+//! | [`Counting`]                          | [`Real`]                  | how many operations an equation costs           |
 //! | [`Dual`] over another                 | that of the other         | derivatives, proven or certified                |
 //!
 //! Three traits say what an equation needs, and an equation has the weakest bound it can live with:
@@ -23,6 +24,7 @@
 //! An operation that has no answer (a division by zero, say) is a value that says so, [`Field::undecided`], and never a
 //! panic: it is unequal to everything, itself included, and every operation on it gives it again.
 
+mod counting;
 mod decimal;
 mod dual;
 mod enclosure;
@@ -35,6 +37,7 @@ mod rational;
 mod rational_function;
 mod surd;
 
+pub use counting::{Convention, Counting, Tally};
 pub use dual::Dual;
 pub use enclosure::Enclosure;
 pub use polynomial::Polynomial;
