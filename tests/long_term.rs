@@ -1,0 +1,567 @@
+//! Goal: what derbez2000 says of a filter's long-term error, of moment matching and of the cost of the filters is true, or is refuted by
+//! an instance.
+//!
+//! Method: identities on rational functions, and on dual numbers over them for expansions (symbolic); exact rational instances where a
+//! claim fails (exact); runs with a named generator and seed, against quantiles with a stated false-alarm probability (statistics).
+//! Kind of evidence: stated with each test.
+
+use immaculate::matrix::{check_positive_definite, ldl};
+use immaculate::model::acceleration::{
+    acceleration_response, constant_acceleration, embedded_constant_velocity, position_matrix, response_noise,
+};
+use immaculate::number::{Convention, Dual, Field, Rational, RationalFunction};
+use immaculate::paper::monte_carlo::Generator;
+use immaculate::steady::gains;
+use immaculate::steady::linear::stein;
+use immaculate::steady::mismatch::{
+    Mismatch, alpha_beta_innovation, alpha_beta_lag, alpha_beta_scatter, inverse, motion_missed,
+};
+use immaculate::steady::operations::{Filter, Form, cycle};
+use immaculate::steady::perturbation::{
+    Perturbation, other_mode_weight, printed_spread_bound, printed_weight, second_moment, spread_bound, spread_term,
+};
+use immaculate::steady::polynomial::{has_radius_below, rows_of};
+use immaculate::steady::riccati::{NoSteadyState, Riccati, SteadyState};
+use immaculate::steady::unrolled::{FilterStep, recursion, unrolled, unrolled_as_printed};
+use nalgebra::{Matrix1, Matrix2, Matrix3, SMatrix, SVector, Vector1, Vector2, Vector3};
+use num_traits::{One, Zero};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+type Unknown = RationalFunction;
+
+fn unknown(name: &str) -> Unknown {
+    Unknown::unknown(name)
+}
+
+fn rational(text: &str) -> Rational {
+    let (p, q) = text.split_once('/').unwrap_or((text, "1"));
+    Rational::from_decimal(p).unwrap() / Rational::from_decimal(q).unwrap()
+}
+
+/// A symmetric matrix of unknowns.
+fn symmetric(name: &str) -> Matrix3<Unknown> {
+    Matrix3::from_fn(|i, j| unknown(&format!("{name}{}{}", i.min(j), i.max(j))))
+}
+
+// Moment matching as a perturbation
+
+/// The perturbation of a filter of constant acceleration, all of whose numbers are unknown.
+fn perturbation() -> Perturbation<Unknown, 3> {
+    Perturbation {
+        transition: constant_acceleration(&unknown("t")),
+        measurement: position_matrix(),
+        measurement_variance: unknown("R"),
+        predicted: symmetric("P"),
+        change: symmetric("D"),
+    }
+}
+
+fn as_dual(problem: &Perturbation<Unknown, 3>) -> Perturbation<Dual<Unknown>, 3> {
+    let constant = |entry: Unknown| Dual::constant(entry);
+    Perturbation {
+        transition: problem.transition.clone().map(constant),
+        measurement: problem.measurement.clone().map(constant),
+        measurement_variance: constant(problem.measurement_variance.clone()),
+        predicted: problem.predicted.clone().map(constant),
+        change: problem.change.clone().map(constant),
+    }
+}
+
+#[test]
+fn the_expansion_of_the_closed_loop_is_its_derivative() {
+    // Symbolic, for all P⁻, ΔP, R and t: both sides are run on ε itself.
+    let problem = perturbation();
+    let dual = as_dual(&problem);
+    let epsilon = Dual::variable(Unknown::zero());
+    let moved = dual.closed_loop(&epsilon);
+    let slope = moved.map(|entry| entry.slope().clone());
+    assert_eq!(slope, problem.first_order());
+    assert_eq!(
+        moved.map(|entry| entry.value().clone()),
+        problem.closed_loop(&Unknown::zero())
+    );
+    // As printed, with ε in one denominator: the same to first order, and not beyond.
+    assert_eq!(dual.printed_expansion(&epsilon), moved);
+    assert_eq!(dual.exact_expansion(&epsilon), moved);
+    let small = Perturbation {
+        transition: constant_acceleration(&Unknown::one()),
+        predicted: Matrix3::identity(),
+        change: Matrix3::identity() * unknown("d"),
+        ..problem
+    };
+    let epsilon = unknown("e");
+    assert_eq!(small.exact_expansion(&epsilon), small.closed_loop(&epsilon));
+    assert_ne!(small.printed_expansion(&epsilon), small.closed_loop(&epsilon));
+}
+
+#[test]
+fn the_spread_of_two_means_is_that_of_their_gap() {
+    // Symbolic: for each i, and summed over both.
+    let mean = |name: &str| Vector2::new(unknown(&format!("{name}0")), unknown(&format!("{name}1")));
+    let (first, second, weight) = (mean("x"), mean("y"), unknown("w"));
+    let rest = Unknown::one() - weight.clone();
+    let mixed = &first * rest.clone() + &second * weight.clone();
+    let gap = &first - &second;
+    let gap = &gap * gap.transpose();
+    let spread = |mean: &Vector2<Unknown>| {
+        let deviation = mean - &mixed;
+        &deviation * deviation.transpose()
+    };
+    assert_eq!(spread(&first), spread_term(&weight, &gap));
+    assert_eq!(spread(&second), spread_term(&rest, &gap));
+    let together = spread(&first) * rest.clone() + spread(&second) * weight.clone();
+    assert_eq!(together, gap * (rest * weight));
+}
+
+#[test]
+fn twice_both_errors_bound_the_spread() {
+    // Symbolic: what is left over is the square of the sum, so it is positive semidefinite.
+    let error = |name: &str| Vector2::new(unknown(&format!("{name}0")), unknown(&format!("{name}1")));
+    let (e, f, weight) = (error("e"), error("f"), unknown("w"));
+    let square = |v: &Vector2<Unknown>| v * v.transpose();
+    let bound = spread_bound(&weight, [&square(&e), &square(&f)]);
+    let left_over = bound - spread_term(&weight, &square(&(&e - &f)));
+    assert_eq!(left_over, spread_term(&weight, &square(&(e + f))));
+}
+
+/// Two filters with fixed gains and constant mode probabilities ("we may treat the μ's as constant") on a target of constant
+/// acceleration: the second moments of their errors, together.
+struct Pair {
+    /// `mixing[j][i]`.
+    mixing: [Vec<Rational>; 2],
+    /// The second moment of (e¹, e²).
+    moment: SMatrix<Rational, 6, 6>,
+}
+
+impl Pair {
+    /// With damping root θ of both filters, probability μ of constant velocity, acceleration a; t = 1 and R = 1.
+    fn new(root: &Rational, probability: &Rational, acceleration: &Rational, mixes: bool) -> Self {
+        let (one, stay) = (Rational::one(), rational("0.95"));
+        let other = Rational::one() - probability.clone();
+        let mixing = if mixes {
+            let to_second = other_mode_weight(&stay, probability);
+            let to_first = other_mode_weight(&stay, &other);
+            [
+                vec![&one - &to_first, to_first],
+                vec![to_second.clone(), &one - &to_second],
+            ]
+        } else {
+            [vec![one.clone(), Rational::zero()], vec![Rational::zero(), one.clone()]]
+        };
+        let gains = [
+            gains::alpha_beta_gain(root, &one),
+            gains::alpha_beta_gamma_gain(root, &one),
+        ];
+        let motions = [embedded_constant_velocity(&one), constant_acceleration(&one)];
+        let missed = [motion_missed(acceleration, &one), Vector3::zeros()];
+        let (mut a, mut b, mut k) = (
+            SMatrix::<Rational, 6, 6>::zeros(),
+            SVector::<Rational, 6>::zeros(),
+            SVector::<Rational, 6>::zeros(),
+        );
+        for j in 0..2 {
+            let filter = Mismatch::new(
+                &motions[j],
+                &position_matrix(),
+                gains[j].clone(),
+                &missed[j],
+                one.clone(),
+            );
+            for i in 0..2 {
+                let block = &filter.closed_loop * mixing[j][i].clone();
+                a.fixed_view_mut::<3, 3>(3 * j, 3 * i).copy_from(&block);
+            }
+            b.fixed_rows_mut::<3>(3 * j).copy_from(&filter.missed);
+            k.fixed_rows_mut::<3>(3 * j).copy_from(&filter.gain);
+        }
+        // The moments exist.
+        assert_eq!(has_radius_below(&rows_of(&a), &one), Some(true));
+        let mean = settle(&a, &b);
+        let covariance = stein(&a, &(&k * k.transpose())).unwrap();
+        Self {
+            mixing,
+            moment: second_moment(&mean, &covariance),
+        }
+    }
+
+    fn block(&self, i: usize, j: usize) -> Matrix3<Rational> {
+        self.moment.fixed_view::<3, 3>(3 * i, 3 * j).into_owned()
+    }
+
+    /// Pᵉ of both.
+    fn errors(&self) -> [Matrix3<Rational>; 2] {
+        [self.block(0, 0), self.block(1, 1)]
+    }
+
+    /// D.
+    fn gap(&self) -> Matrix3<Rational> {
+        self.block(0, 0) + self.block(1, 1) - self.block(0, 1) - self.block(1, 0)
+    }
+}
+
+fn settle(a: &SMatrix<Rational, 6, 6>, b: &SVector<Rational, 6>) -> SVector<Rational, 6> {
+    let rest = SMatrix::<Rational, 6, 6>::identity() - a;
+    let solved = immaculate::steady::linear::solve(rows_of(&rest), rows_of(b)).unwrap();
+    SVector::from_fn(|i, _| solved[i][0].clone())
+}
+
+/// Whether A ⪯ B, decided exactly; a difference of no full rank does not occur here.
+fn is_below(a: &Matrix3<Rational>, b: &Matrix3<Rational>) -> bool {
+    check_positive_definite(&ldl(&(b - a))).is_ok()
+}
+
+#[test]
+fn the_printed_bound_of_the_spread_fails() {
+    // Exact. Both modes equally likely, a symmetric chain with a = .95, and the paper's own target with an acceleration of 10.
+    let half = rational("1/2");
+    for mixes in [true, false] {
+        let pair = Pair::new(&half, &half, &rational("10"), mixes);
+        let (errors, gap) = (pair.errors(), pair.gap());
+        // μⁱ∣ʲ as `[j][i]`. Filters that are not mixed are weighed the same way.
+        let (own, other) = (rational("0.95"), rational("0.05"));
+        let mixing = [vec![own.clone(), other.clone()], vec![other, own]];
+        assert!(!mixes || pair.mixing == mixing);
+        let spread = |i: usize, j: usize| spread_term(&mixing[j][1 - i], &gap);
+        let printed = |i: usize| printed_spread_bound(&mixing, &errors, i);
+        // Mode i = constant velocity: the small error stands for the large gap, and already the variance of the position is above.
+        for j in 0..2 {
+            let (spread, printed) = (spread(0, j)[(0, 0)].clone(), printed(0)[(0, 0)].clone());
+            assert!(spread > printed.clone() * Rational::integer(10), "{spread} {printed}");
+        }
+        // Mode i = constant acceleration: in the mixture of its own mode the variance of the position is within the bound, and another
+        // direction is not. In the sense of matrices the claim fails for both modes and both mixtures.
+        assert!(spread(1, 1)[(0, 0)] < printed(1)[(0, 0)]);
+        for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+            assert!(!is_below(&spread(i, j), &printed(i)), "{i} {j}");
+        }
+        // In the mixture of the other mode its weight is the large one, .95, and the bound has the small one.
+        assert!(spread(1, 0)[(0, 0)] > printed(1)[(0, 0)]);
+        // The sum over i, what the mixture really adds, is above its bound for both mixtures.
+        for j in 0..2 {
+            let sum = |term: &dyn Fn(usize) -> Rational| {
+                (0..2).fold(Rational::zero(), |sum, i| sum + mixing[j][i].clone() * term(i))
+            };
+            let (true_sum, printed_sum) = (
+                sum(&|i| spread(i, j)[(0, 0)].clone()),
+                sum(&|i| printed(i)[(0, 0)].clone()),
+            );
+            assert!(true_sum > printed_sum, "{j}: {true_sum} {printed_sum}");
+        }
+        // The bound by twice both errors holds in all four.
+        for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+            let bound = spread_bound(&mixing[j][1 - i], [&errors[0], &errors[1]]);
+            assert!(is_below(&spread(i, j), &bound), "{i} {j}");
+        }
+    }
+}
+
+#[test]
+fn the_weight_of_the_other_mode_is_small_only_between_equals() {
+    // Symbolic: for all a and μ₁ the weight is 1 − a exactly where (1 − a) a (2μ₁ − 1) = 0.
+    let (a, mu) = (unknown("a"), unknown("mu"));
+    let one = Unknown::one;
+    let weight = other_mode_weight(&a, &mu);
+    let below = (one() - a.clone()) * mu.clone() + a.clone() * (one() - mu.clone());
+    let factor = (one() - a.clone()) * a.clone() * (Unknown::integer(2) * mu - one());
+    assert_eq!(weight - printed_weight(&a), factor / below);
+    // Exact: with a = .95 and μ₁ = .95 it is ½, so that ε = ¼ and not .0025.
+    let stay = rational("0.95");
+    assert_eq!(other_mode_weight(&stay, &stay), rational("1/2"));
+    assert_eq!(other_mode_weight(&stay, &rational("1/2")), printed_weight(&stay));
+    let epsilon = |weight: &Rational| weight.clone() * weight.clone();
+    assert_eq!(
+        epsilon(&rational("1/2")) / epsilon(&printed_weight(&stay)),
+        rational("100")
+    );
+    // As one mode becomes certain it tends to one, however small 1 − a is.
+    for stay in ["0.95", "0.999", "0.999999"] {
+        let nearly = other_mode_weight(&rational(stay), &rational("0.999999999999"));
+        assert!(nearly > rational("0.999998"), "{stay}: {nearly}");
+        assert_eq!(other_mode_weight(&rational(stay), &Rational::one()), Rational::one());
+    }
+}
+
+// The mismatched filter
+
+/// The α-β filter of unknown θ, t, R on a target of unknown acceleration.
+fn alpha_beta_mismatch() -> (Mismatch<Unknown>, Vector3<Unknown>) {
+    let (t, a) = (unknown("t"), unknown("a"));
+    let gain = gains::alpha_beta_gain(&unknown("theta"), &t);
+    let missed = motion_missed(&a, &t);
+    let f = embedded_constant_velocity(&t);
+    (
+        Mismatch::new(&f, &position_matrix(), gain.clone(), &missed, unknown("R")),
+        gain,
+    )
+}
+
+#[test]
+fn the_mismatch_equation_has_the_stated_solution() {
+    // Symbolic, for all θ, t, a and R.
+    let (filter, gain) = alpha_beta_mismatch();
+    let (t, a, r) = (unknown("t"), unknown("a"), unknown("R"));
+    let scatter = alpha_beta_scatter(&gain, &r, &t);
+    let carried = &filter.closed_loop * &scatter * filter.closed_loop.transpose();
+    assert_eq!(carried + &gain * gain.transpose() * r, scatter);
+    let error = second_moment(&alpha_beta_lag(&gain, &a, &t), &scatter);
+    assert_eq!(filter.right_side(&error), error);
+    // Without the lag, or with it once too often, it is no solution.
+    assert_ne!(filter.right_side(&scatter), scatter);
+    let lag = filter.lag();
+    let more = &error + &lag * lag.transpose();
+    assert_ne!(filter.right_side(&more), more);
+    // Exact: the general solution is this one, and that of a gain which is no filter's steady one solves (7) too.
+    let one = Rational::one;
+    let missed = motion_missed(&rational("3"), &rational("2"));
+    let f = embedded_constant_velocity(&rational("2"));
+    for gain in [
+        gains::alpha_beta_gain(&rational("1/3"), &rational("2")),
+        Vector3::new(rational("1/2"), rational("1/5"), rational("1/7")),
+    ] {
+        let filter = Mismatch::new(&f, &position_matrix(), gain.clone(), &missed, rational("1/4"));
+        assert_eq!(has_radius_below(&rows_of(&filter.closed_loop), &one()), Some(true));
+        let error = filter.long_term_error().unwrap();
+        assert_eq!(filter.right_side(&error), error);
+        if gain[2].is_zero() {
+            let closed = alpha_beta_scatter(&gain, &rational("1/4"), &rational("2"));
+            let lag = alpha_beta_lag(&gain, &rational("3"), &rational("2"));
+            assert_eq!(error, second_moment(&lag, &closed));
+        }
+    }
+}
+
+#[test]
+fn the_lag_has_a_closed_form() {
+    // Symbolic.
+    let (filter, gain) = alpha_beta_mismatch();
+    let (t, a) = (unknown("t"), unknown("a"));
+    let lag = alpha_beta_lag(&gain, &a, &t);
+    assert_eq!(filter.lag(), lag);
+    assert_eq!(&filter.closed_loop * &lag + &filter.missed, lag);
+    let innovation = position_matrix() * (embedded_constant_velocity(&t) * &lag + motion_missed(&a, &t));
+    let expected = alpha_beta_innovation(&gain, &a, &t);
+    assert_eq!(innovation[(0, 0)], expected);
+    // The bias of step 4, a t²/2, is smaller by β/2.
+    let beta = gain[1].clone() * t.clone();
+    let printed = acceleration_response(&t)[0].clone() * a;
+    assert_eq!(printed, expected * beta / Unknown::integer(2));
+    // The inverse that the closed form came from.
+    let matrix = Matrix3::from_fn(|i, j| unknown(&format!("m{i}{j}")));
+    assert_eq!(inverse(&matrix) * matrix, Matrix3::identity());
+}
+
+#[test]
+fn without_process_noise_nothing_settles() {
+    // Exact. The printed hypothesis: (F, G) is stabilisable; it is with G = G_v, for the noise reaches all that does not decay. But
+    // the gains "may" be computed with a noise, or without.
+    let one = Rational::one;
+    let problem = |noise: &str| Riccati {
+        transition: embedded_constant_velocity(&one()),
+        measurement: position_matrix(),
+        noise: response_noise(
+            &Vector3::new(rational("1/2"), one(), Rational::zero()),
+            &rational(noise),
+        ),
+        measurement_noise: Matrix1::new(one()),
+    };
+    assert!(SteadyState::certify(&problem("5"), 64).is_ok());
+    let refused = SteadyState::certify(&problem("0"), 64);
+    assert!(
+        matches!(refused, Err(NoSteadyState::NotStabilisable { .. })),
+        "{refused:?}"
+    );
+    // What happens instead: after n steps the gain is that of a straight line through n points, 2(2n − 1)/(n(n + 1)) and
+    // 6/(n(n + 1)), which falls to zero; the closed loop with the gain at the end is F, whose double root is one.
+    let without = problem("0");
+    let diffuse = 1_000_000_000_000_i64;
+    let mut predicted = Matrix3::identity() * Rational::integer(diffuse);
+    for n in 1..=12_i64 {
+        let gain = without.gain(&predicted);
+        if n >= 2 {
+            let points = Rational::integer(n * (n + 1));
+            let line = [
+                Rational::integer(2 * (2 * n - 1)) / points.clone(),
+                Rational::integer(6) / points,
+            ];
+            for (entry, expected) in gain.iter().zip(line) {
+                // The initial covariance is finite: its information is a part in 10¹², of at most n² points.
+                assert!(
+                    (entry.clone() - expected).abs() < Rational::new(1000, diffuse),
+                    "{n}: {entry}"
+                );
+            }
+        }
+        predicted = without.next(&predicted);
+    }
+    let settled = Mismatch::new(
+        &without.transition,
+        &without.measurement,
+        Vector3::zeros(),
+        &motion_missed(&one(), &one()),
+        one(),
+    );
+    assert_eq!(has_radius_below(&rows_of(&settled.closed_loop), &one()), Some(false));
+    assert_eq!(settled.long_term_error(), None);
+    assert!(settled.lag().iter().all(|entry| !entry.is_decided()));
+}
+
+/// The bound that a χ² variable exceeds with this probability.
+fn quantile(degrees: f64, exceeded_with: f64) -> f64 {
+    ChiSquared::new(degrees).unwrap().inverse_cdf(1.0 - exceeded_with)
+}
+
+#[test]
+fn the_long_term_error_is_that_of_a_simulation() {
+    // Statistics. Seed 2000, stream 7; the probability that a right equation fails is 3e-6, one part for each bound.
+    const RUNS: usize = 4000;
+    const FALSE_ALARM: f64 = 1e-6;
+    let (t, a, r): (f64, f64, f64) = (2.0, 30.0, 0.05);
+    let root = gains::alpha_beta_root(&gains::tracking_index(&5.0, &r, &t));
+    let gain = gains::alpha_beta_gain(&root, &t);
+    let (f, h) = (embedded_constant_velocity(&t), position_matrix::<f64>());
+    let filter = Mismatch::new(&f, &h, gain, &motion_missed(&a, &t), r);
+    let lag = filter.lag();
+    let error = filter.long_term_error().unwrap();
+    let scatter: Matrix2<f64> = (error - lag * lag.transpose()).fixed_view::<2, 2>(0, 0).into_owned();
+    let factors = ldl(&scatter);
+    let mut generator = Generator::new(2000, 7);
+    let (mut sum, mut squares) = (Vector2::zeros(), 0.0);
+    for _ in 0..RUNS {
+        // The filter itself, on the target itself, from the truth; ρ(A₊) < 0.5, so that after 60 steps the start is forgotten.
+        let (mut truth, mut estimate) = (Vector3::new(0.0, 0.0, a), Vector3::new(0.0, 0.0, a));
+        for _ in 0..60 {
+            truth = constant_acceleration(&t) * truth;
+            let predicted = f * estimate;
+            let z = truth[0] + f64::sqrt(r) * generator.standard_normal();
+            estimate = predicted + gain * (z - predicted[0]);
+        }
+        let off: Vector3<f64> = truth - estimate - lag;
+        assert_eq!(off[2], 0.0, "the acceleration is missed altogether");
+        let off = Vector2::new(off[0], off[1]);
+        sum += off;
+        squares += immaculate::matrix::quadratic_form(&factors, &off);
+    }
+    let mean = immaculate::matrix::quadratic_form(&factors, &sum) / RUNS as f64;
+    assert!(mean < quantile(2.0, FALSE_ALARM), "the lag: {mean}");
+    let degrees = 2.0 * RUNS as f64;
+    assert!(
+        squares < quantile(degrees, FALSE_ALARM),
+        "the scatter: {squares} of {degrees}"
+    );
+    assert!(
+        squares > quantile(degrees, 1.0 - FALSE_ALARM),
+        "the scatter: {squares} of {degrees}"
+    );
+    // The bias of step 4 would be noticed: the innovation's mean is a t²/β, and not a t²/2.
+    assert!((alpha_beta_innovation(&gain, &a, &t) / (a * t * t / 2.0) - 1.0).abs() > 0.05);
+}
+
+// The recursion undone
+
+#[test]
+fn the_recursion_unrolls_with_the_latest_matrix_on_the_left() {
+    // Symbolic: three steps with any matrices.
+    let matrix = |name: &str| Matrix2::from_fn(|i, j| unknown(&format!("{name}{i}{j}")));
+    let vector = |name: &str| Vector2::new(unknown(&format!("{name}0")), unknown(&format!("{name}1")));
+    let step = |number: usize| FilterStep {
+        closed_loop: matrix(&format!("A{number}")),
+        gain: vector(&format!("K{number}")),
+        measurement: Vector1::new(unknown(&format!("y{number}"))),
+    };
+    let (initial, steps) = (vector("x"), [step(1), step(2), step(3)]);
+    let estimate = recursion(&initial, &steps);
+    assert_eq!(unrolled(&initial, &steps), estimate);
+    assert_ne!(unrolled_as_printed(&initial, &steps), estimate);
+    // Exact: two steps of a filter that starts from a prior, whose gains change from one to the other.
+    let one = Rational::one;
+    let problem = Riccati {
+        transition: constant_acceleration(&one()),
+        measurement: position_matrix(),
+        noise: response_noise(&acceleration_response(&one()), &one()),
+        measurement_noise: Matrix1::new(one()),
+    };
+    let mut predicted = Matrix3::identity();
+    let steps: Vec<FilterStep<Rational, 3, 1>> = [3, 7]
+        .into_iter()
+        .map(|y| {
+            let gain = problem.gain(&predicted);
+            let closed_loop = problem.closed_loop(&gain);
+            predicted = problem.next(&predicted);
+            FilterStep {
+                closed_loop,
+                gain,
+                measurement: Vector1::new(Rational::integer(y)),
+            }
+        })
+        .collect();
+    let initial = Vector3::new(one(), one(), one());
+    let estimate = recursion(&initial, &steps);
+    assert_eq!(unrolled(&initial, &steps), estimate);
+    assert_ne!(unrolled_as_printed(&initial, &steps), estimate);
+    // With one gain for ever the matrices commute, and the order does not matter.
+    let settled = vec![steps[1].clone(); 4];
+    assert_eq!(unrolled_as_printed(&initial, &settled), recursion(&initial, &settled));
+}
+
+// What the filters cost
+
+/// Operations of one cycle for both coordinates, under the conventions from the one that counts most.
+fn both_coordinates(filter: Filter, form: Form) -> [usize; 3] {
+    Convention::ALL.map(|convention| 2 * cycle(filter, form, convention).total(convention))
+}
+
+#[test]
+fn the_filters_cost_what_their_equations_cost() {
+    // Exact. The fixed-gain filter by hand, one coordinate, every matrix full and every sum from nothing:
+    // c 8, μᵢ∣ⱼ 8, x̂⁰ 24, F x̂⁰ 36, H x̂⁻ 12, ν 2, K ν 12, x̂⁻ + K ν 6, ln L 10, Λ 4, C 4, μ 4, x̂ 12.
+    let by_hand = 8 + 8 + 24 + 36 + 12 + 2 + 12 + 6 + 10 + 4 + 4 + 4 + 12;
+    assert_eq!(
+        both_coordinates(Filter::FixedGain, Form::Short),
+        [2 * by_hand, 228, 148]
+    );
+    assert_eq!(both_coordinates(Filter::FixedGain, Form::Printed), [284, 228, 148]);
+    // The Kalman filter with the printed update, by hand: F x̂ 18, F P Fᵀ + Q 117, H P Hᵀ + R 25, P Hᵀ 18, K 3, H x̂⁻ 6, ν 1, K ν 6,
+    // x̂⁻ + K ν 3, K H 18, I − K H 9, (I − K H) P 54.
+    let by_hand = 18 + 117 + 25 + 18 + 3 + 6 + 1 + 6 + 3 + 18 + 9 + 54;
+    let kalman = |form| both_coordinates(Filter::ConstantAcceleration, form);
+    assert_eq!(kalman(Form::Printed), [2 * by_hand, 456, 156]);
+    assert_eq!(kalman(Form::Short), [460, 372, 166]);
+    let imm = |form| both_coordinates(Filter::Imm, form);
+    assert_eq!(imm(Form::Printed), [1848, 1454, 712]);
+    assert_eq!(imm(Form::Short), [1656, 1286, 728]);
+}
+
+#[test]
+fn the_printed_operation_counts_stand_beside_the_equations() {
+    // Exact, as far as it goes: the paper's program is not printed, so a number can only be inside or outside of what its equations
+    // cost when nothing is saved and when every zero and one is known.
+    let range = |filter: Filter| {
+        let totals: Vec<usize> = Form::ALL
+            .iter()
+            .flat_map(|form| both_coordinates(filter, *form))
+            .collect();
+        (*totals.iter().min().unwrap(), *totals.iter().max().unwrap())
+    };
+    let is_reachable = |filter: Filter| {
+        let (least, most) = range(filter);
+        filter.printed().iter().all(|printed| (least..=most).contains(printed))
+    };
+    assert!(is_reachable(Filter::FixedGain), "148 ≤ 242 ≤ 284");
+    assert!(is_reachable(Filter::Imm), "712 ≤ 1322, 1326, 1332 ≤ 1848");
+    // 590 is more than the printed equations cost with every matrix full: something was computed twice.
+    assert!(!is_reachable(Filter::ConstantAcceleration), "156 ≤ 556 < 590");
+    // No single convention gives all three.
+    let ratio = |form, above: Filter, below: Filter| {
+        let (above, below) = (both_coordinates(above, form), both_coordinates(below, form));
+        [0, 1, 2].map(|k| (100.0 * above[k] as f64 / below[k] as f64).round() / 100.0)
+    };
+    // "Half the computational load": so it is for full matrices and the printed update; the printed numbers have 0.41. Where zeros and
+    // ones are known the fixed-gain filter costs as much as the Kalman filter that it is to replace.
+    let load = |form| ratio(form, Filter::FixedGain, Filter::ConstantAcceleration);
+    assert_eq!(load(Form::Printed), [0.51, 0.5, 0.95]);
+    assert_eq!(load(Form::Short), [0.62, 0.61, 0.89]);
+    // Against the IMM filter it saves what the paper says, 1326/242 = 5.48, or more.
+    let saved = |form| ratio(form, Filter::Imm, Filter::FixedGain);
+    assert_eq!(saved(Form::Printed), [6.51, 6.38, 4.81]);
+    assert_eq!(saved(Form::Short), [5.83, 5.64, 4.92]);
+}
