@@ -13,6 +13,13 @@ use plotters::prelude::*;
 #[error("the figure could not be drawn: {0}")]
 pub struct NotDrawn(String);
 
+impl NotDrawn {
+    /// For the reason that the drawing library gives.
+    pub(super) fn because(error: impl std::fmt::Display) -> Self {
+        Self(error.to_string())
+    }
+}
+
 /// One colour a filter, told apart by people who see colours differently (Okabe and Ito 2008).
 const COLOURS: [RGBColor; 5] = [
     RGBColor(230, 159, 0),
@@ -345,5 +352,5 @@ fn draw_errors(
 }
 
 pub(super) fn not_drawn(error: impl std::fmt::Display) -> NotDrawn {
-    NotDrawn(error.to_string())
+    NotDrawn::because(error)
 }

@@ -8,6 +8,7 @@
 //! - [`reach`]: when there is none, and why;
 //! - [`polynomial`], [`linear`]: stability of one matrix, and linear systems, without an eigenvalue;
 //! - [`mismatch`]: what a filter with a fixed gain makes of a target that it does not model;
+//! - [`long_term`], [`simulated`]: the long-term error of the IMM filter, predicted and simulated;
 //! - [`perturbation`]: moment matching as a perturbation of fixed gains;
 //! - [`unrolled`]: the recursion undone;
 //! - [`operations`]: what the filters cost;
@@ -20,6 +21,7 @@
 pub mod certificate;
 pub mod gains;
 pub mod linear;
+pub mod long_term;
 pub mod map;
 pub mod mismatch;
 pub mod operations;
@@ -29,5 +31,6 @@ pub mod polynomial;
 pub mod reach;
 pub mod riccati;
 pub mod search;
+pub mod simulated;
 pub mod unrolled;
 pub mod verdict;
