@@ -226,6 +226,10 @@ fn reproduce(arguments: &Reproduce) -> Result<String, Refusal> {
         });
         if let Some(directory) = &arguments.out {
             write_files(directory, main, &value)?;
+            if paper == Paper::Derbez2000 {
+                let figures = figure_of(report::long_term::figures_1_and_2(arguments.seed))?;
+                write_file(&directory.join("derbez2000-figures-1-and-2.svg"), &figures)?;
+            }
         }
         values.push(value);
         text.push_str(&report::reproduction::text(paper, main));

@@ -5,6 +5,9 @@
 //! claim fails (exact); runs with a named generator and seed, against quantiles with a stated false-alarm probability (statistics).
 //! Kind of evidence: stated with each test.
 
+// Doubles are compared exactly where they are given or rounded.
+#![allow(clippy::float_cmp)]
+
 use immaculate::matrix::{check_positive_definite, ldl};
 use immaculate::model::acceleration::{
     acceleration_response, constant_acceleration, embedded_constant_velocity, embedded_velocity_response,
@@ -171,8 +174,8 @@ impl Pair {
                 &missed[j],
                 one.clone(),
             );
-            for i in 0..2 {
-                let block = &filter.closed_loop * mixing[j][i].clone();
+            for (i, weight) in mixing[j].iter().enumerate() {
+                let block = &filter.closed_loop * weight.clone();
                 a.fixed_view_mut::<3, 3>(3 * j, 3 * i).copy_from(&block);
             }
             b.fixed_rows_mut::<3>(3 * j).copy_from(&filter.missed);
@@ -241,9 +244,9 @@ fn the_printed_bound_of_the_spread_fails() {
         // In the mixture of the other mode its weight is the large one, .95, and the bound has the small one.
         assert!(spread(1, 0)[(0, 0)] > printed(1)[(0, 0)]);
         // The sum over i, what the mixture really adds, is above its bound for both mixtures.
-        for j in 0..2 {
+        for (j, weights) in mixing.iter().enumerate() {
             let sum = |term: &dyn Fn(usize) -> Rational| {
-                (0..2).fold(Rational::zero(), |sum, i| sum + mixing[j][i].clone() * term(i))
+                (0..2).fold(Rational::zero(), |sum, i| sum + weights[i].clone() * term(i))
             };
             let (true_sum, printed_sum) = (
                 sum(&|i| spread(i, j)[(0, 0)].clone()),

@@ -854,7 +854,8 @@ fn elementary_functions_of_dual_numbers_follow_the_chain_rule() {
             assert!(rest < remainder && rest > -remainder, "{name}: {rest}");
             // And a slope that is off by 2⁻⁷⁰ is refused: the bound is not slack.
             let off = rest + h.clone() * Enclosure::rational(&power_of_two(-70));
-            assert!(!(off < h.clone() * h.clone() * Enclosure::exact(second)), "{name}");
+            let is_below = off < h.clone() * h.clone() * Enclosure::exact(second);
+            assert!(!is_below, "{name}");
         }
     });
 }

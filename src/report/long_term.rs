@@ -4,7 +4,9 @@
 //! manoeuvre beginning with the run no form of it is right where constant velocity has the greater noise.
 
 use super::figure::NotDrawn;
-use crate::steady::simulated::Grid;
+use crate::paper::monte_carlo::Generator;
+use crate::steady::long_term::Form;
+use crate::steady::simulated::{Grid, Start};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
@@ -30,6 +32,39 @@ const FULL: f64 = 100.0;
 const TOO_LITTLE: (f64, f64, f64) = (0.0, 114.0, 178.0);
 const TOO_MUCH: (f64, f64, f64) = (213.0, 94.0, 0.0);
 const NO_PREDICTION: RGBColor = RGBColor(120, 120, 120);
+
+/// Both figures for a scan time of two seconds: the algorithm as it makes sense (the weights of (1) in step 3) and corrected, beside simulations
+/// that start at the truth, and corrected beside simulations with which the manoeuvre begins.
+///
+/// # Errors
+///
+/// [`NotDrawn`] when a figure cannot be drawn, or its settings not be simulated.
+pub fn figures_1_and_2(seed: u64) -> Result<String, NotDrawn> {
+    let noise = |point: usize| {
+        let mut generator = Generator::new(seed, point as u64);
+        move || generator.standard_normal()
+    };
+    let kinds = [
+        ("weights of (1), from the truth", Form::Reindexed, Start::AtTheTruth),
+        ("corrected, from the truth", Form::Corrected, Start::AtTheTruth),
+        (
+            "corrected, manoeuvre with the run",
+            Form::Corrected,
+            Start::BeforeTheManoeuvre,
+        ),
+    ];
+    let mut panels = Vec::new();
+    for (name, grid) in [("Figure 1", Grid::figure_1(2.0)), ("Figure 2", Grid::figure_2(2.0))] {
+        for (words, form, start) in kinds {
+            panels.push(Panel {
+                title: format!("{name}: {words}"),
+                percentages: grid.percentages(form, start, noise).map_err(NotDrawn::because)?,
+                grid: grid.clone(),
+            });
+        }
+    }
+    heat_maps(&panels, kinds.len())
+}
 
 /// The panels, so many in a row, with one scale below them.
 ///

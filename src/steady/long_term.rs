@@ -331,8 +331,8 @@ impl JointErrors {
         for j in 0..2 {
             let r = setting.measurement_variance;
             let filter = Mismatch::new(&motions[j], &position_matrix(), gains[j], &missed[j], r);
-            for i in 0..2 {
-                let block = filter.closed_loop * mixing[j][i];
+            for (i, weight) in mixing[j].iter().enumerate() {
+                let block = filter.closed_loop * *weight;
                 a.fixed_view_mut::<3, 3>(3 * j, 3 * i).copy_from(&block);
             }
             b.fixed_rows_mut::<3>(3 * j).copy_from(&filter.missed);
@@ -371,10 +371,8 @@ impl JointErrors {
     fn innovation(&self, setting: &Setting, mixing: &[Vec<f64>], j: usize) -> (f64, f64) {
         let row: RowVector3<f64> = position_matrix::<f64>() * setting.motions()[j];
         let mut weights = SMatrix::<f64, 1, 6>::zeros();
-        for i in 0..2 {
-            weights
-                .fixed_view_mut::<1, 3>(0, 3 * i)
-                .copy_from(&(row * mixing[j][i]));
+        for (i, weight) in mixing[j].iter().enumerate() {
+            weights.fixed_view_mut::<1, 3>(0, 3 * i).copy_from(&(row * *weight));
         }
         let bias = (weights * self.mean)[(0, 0)] + setting.missed()[j][0];
         let variance = (weights * self.covariance * weights.transpose())[(0, 0)] + setting.measurement_variance;

@@ -79,10 +79,10 @@ impl Form {
 pub fn cycle(filter: Filter, form: Form, convention: Convention) -> Tally {
     match filter {
         Filter::ConstantAcceleration => kalman_cycle(form, convention),
-        Filter::Imm => imm_cycle(convention, equations(form, convention), None),
+        Filter::Imm => imm_cycle(convention, &equations(form, convention), None),
         Filter::FixedGain => imm_cycle(
             convention,
-            shortened(Equations::fixed_gain()),
+            &shortened(&Equations::fixed_gain()),
             Some(fixed_gains(convention)),
         ),
     }
@@ -143,7 +143,7 @@ fn identity(convention: Convention) -> Matrix3<Counting> {
 }
 
 /// One cycle of an IMM filter.
-fn imm_cycle(convention: Convention, equations: Table, fixed_gains: Option<Vec<FixedGain<Counting, 3, 1>>>) -> Tally {
+fn imm_cycle(convention: Convention, equations: &Table, fixed_gains: Option<Vec<FixedGain<Counting, 3, 1>>>) -> Tally {
     let number = |value: f64| Counting::input(value, convention);
     let has_covariance = fixed_gains.is_none();
     let problem = Problem {
@@ -162,7 +162,7 @@ fn imm_cycle(convention: Convention, equations: Table, fixed_gains: Option<Vec<F
         modes: vec![start; 2],
         mode_probabilities: vec![number(0.5), number(0.5)],
     };
-    let mut filter = Imm::unchecked(problem, equations, &initial);
+    let mut filter = Imm::unchecked(problem, *equations, &initial);
     // The second step is counted: at the first both modes have the same estimate.
     let _ = filter.step(Some(&Vector1::new(number(7.0))));
     let (_, tally) = Counting::count(|| filter.step(Some(&Vector1::new(number(9.0)))).is_ok());
@@ -171,7 +171,7 @@ fn imm_cycle(convention: Convention, equations: Table, fixed_gains: Option<Vec<F
 
 /// The cycle with covariances, and its covariance update in the given form.
 fn equations(form: Form, convention: Convention) -> Table {
-    let table = shortened(Equations::kalman());
+    let table = shortened(&Equations::kalman());
     match (form, convention) {
         (Form::Short, _) => table,
         (Form::Printed, Convention::Structural) => Equations {
@@ -192,12 +192,12 @@ fn equations(form: Form, convention: Convention) -> Table {
 }
 
 /// The table without what the paper does not compute.
-fn shortened(table: Table) -> Table {
+fn shortened(table: &Table) -> Table {
     Equations {
         combined_prediction_mean: |_, _, _| SVector::zeros(),
         combined_prediction_covariance: |_, _, _| SMatrix::zeros(),
         log_evidence: |_, _, _| Counting::zero(),
-        ..table
+        ..*table
     }
 }
 

@@ -14,11 +14,6 @@ use nalgebra::{Matrix3, SMatrix, Vector3};
 use num_traits::Zero;
 use std::fmt::Write;
 
-/// A judge of stability or of the long-term errors has not spoken yet.
-pub(super) fn not_yet_judged(s: &Specification, id: &str) -> Judgement {
-    s.judgement(id, Verdict::Undecided, "not yet judged".to_owned())
-}
-
 /// The steady mean error, for every gain at once.
 ///
 /// ```text

@@ -9,7 +9,7 @@ use super::contestants::Reading;
 use super::path::{Motion, Place};
 use super::relative::{Relative, Tally, extremes, relative};
 use super::scenario::{Contestant, Coordinates, Scenario, Steps, follow};
-use super::{CLOSEST_POINT, arithmetic, scenario, search, stability};
+use super::{CLOSEST_POINT, arithmetic, long_term, scenario, search, stability};
 use crate::imm::Equations;
 use crate::paper::experiment::Experiment;
 use crate::paper::monte_carlo::Progress;
@@ -49,16 +49,15 @@ struct Evidence {
 pub fn judge(effort: Effort, progress: Progress) -> Result<Vec<Judgement>, InvalidChoice> {
     let s = specification();
     let runs = evidence(effort, progress)?;
-    let later = |id: &str| arithmetic::not_yet_judged(s, id);
     Ok(vec![
-        later("derbez2000-half-the-load"),
+        long_term::half_the_load(s),
         almost_as_well(s, &runs),
         arithmetic::constant_bounded_error(s),
         minor_covariance_changes(s, &runs, effort),
         sluggish_onset(s, &runs),
-        later("derbez2000-proposition"),
+        long_term::proposition(s),
         stability::theorem(s),
-        later("derbez2000-algorithm-accuracy"),
+        long_term::algorithm_accuracy(s, effort),
         stability::stability_matrices(s),
         stability::prior_data_discounted(s),
         arithmetic::moment_matching_bound(s),

@@ -10,6 +10,7 @@
 //! - [`search`]: whether anything that scenario 2 leaves open gives the figures of the published table;
 //! - [`claims`], [`arithmetic`]: the judges of the claims, with runs and without;
 //! - [`stability`], [`instances`]: the judges of the claims on stability, and the small filters that decide them;
+//! - [`long_term`]: those on the long-term error and on the cost;
 //! - [`relative`]: how a claim is judged whose configuration was not published.
 //!
 //! Scenario 3 uses measurements of another paper that were not published: nothing of it can be run.
@@ -18,6 +19,7 @@ pub mod arithmetic;
 pub mod claims;
 pub mod contestants;
 pub mod instances;
+pub mod long_term;
 pub mod path;
 pub mod radar;
 pub mod relative;
