@@ -226,10 +226,6 @@ fn reproduce(arguments: &Reproduce) -> Result<String, Refusal> {
         });
         if let Some(directory) = &arguments.out {
             write_files(directory, main, &value)?;
-            if paper == Paper::Derbez2000 {
-                let figures = figure_of(report::long_term::figures_1_and_2(arguments.seed))?;
-                write_file(&directory.join("derbez2000-figures-1-and-2.svg"), &figures)?;
-            }
         }
         values.push(value);
         text.push_str(&report::reproduction::text(paper, main));
@@ -319,6 +315,10 @@ fn write_files(
             format!("{paper}-path.csv"),
             report::reproduction::path_csv(reproduction, first_run),
         ));
+    }
+    if paper == Paper::Derbez2000.key() {
+        let figures = report::long_term::figures_1_and_2(reproduction.seed);
+        files.push((format!("{paper}-figures-1-and-2.svg"), figure_of(figures)?));
     }
     for (name, content) in files {
         let path = directory.join(name);

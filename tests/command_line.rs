@@ -58,6 +58,77 @@ fn a_rule_is_listed_with_its_proven_degree() {
 }
 
 #[test]
+fn stability_proves_and_refutes() {
+    let text = succeeds(&["stability"]);
+    for part in [
+        "t = 2 s, R = 0.05 m²",
+        "MIXED     certified stable",
+        "P = [",
+        "UN-MIXED  certified stable",
+        "0.04555",
+    ] {
+        assert!(text.contains(part), "{part} in\n{text}");
+    }
+    let unstable = json(&["stability", "--roots", "3/4", "1/6", "--json"]);
+    assert_eq!(unstable["mixed"]["verdict"], "unstable");
+    assert_eq!(unstable["unmixed"]["verdict"], "stable");
+    assert_eq!(unstable["steady"][0]["tracking_index"], "1.66666666667e-1");
+    assert_eq!(unstable["mixed"]["certificate"]["proof"]["unstable"]["word"], "vva");
+    let folder = temporary("certificates");
+    std::fs::create_dir_all(&folder).unwrap();
+    let path = folder.join("proof.json");
+    let file = path.to_str().unwrap();
+    succeeds(&["stability", "--interval", "1", "--certificate", file]);
+    assert!(succeeds(&["stability", "--check", file]).ends_with("proven stable\n"));
+    assert_eq!(json(&["stability", "--check", file, "--json"])["proves"], "stable");
+    // A slip of the pen, a proof of something else, and no certificate at all.
+    let written = std::fs::read_to_string(&path).unwrap();
+    std::fs::write(&path, written.replacen("\"1\"", "\"2\"", 1)).unwrap();
+    assert!(refuses(&["stability", "--check", file], 2).contains("was changed after it was written"));
+    std::fs::write(&path, "{}").unwrap();
+    assert!(refuses(&["stability", "--check", file], 2).contains("is not a certificate"));
+    std::fs::remove_dir_all(folder).unwrap();
+    for (arguments, reason) in [
+        (["--interval", "0"], "`interval` is 0"),
+        (["--measurement-noise", "-1"], "`measurement` is -1"),
+        (["--velocity-noise", "0"], "no steady state"),
+        (["--acceleration-noise", "1e99"], "is its unit right"),
+        (["--check", "nowhere.json"], "nowhere.json"),
+    ] {
+        let complaint = refuses(&["stability", arguments[0], arguments[1]], 2);
+        assert!(complaint.contains(reason), "{complaint}");
+    }
+}
+
+#[test]
+fn the_stability_map_is_text_data_and_picture() {
+    let folder = temporary("map");
+    let text = succeeds(&[
+        "stability",
+        "--map",
+        "--points",
+        "7",
+        "--from",
+        "-2",
+        "--to",
+        "2",
+        "--out",
+        folder.to_str().unwrap(),
+    ]);
+    assert!(
+        text.contains("certified stable") && text.lines().filter(|line| line.contains('·')).count() >= 7,
+        "{text}"
+    );
+    let read = |name: &str| std::fs::read_to_string(folder.join(name)).unwrap();
+    let map: Value = serde_json::from_str(&read("stability-map.json")).unwrap();
+    assert_eq!(list(&map["points"]).len(), 49);
+    assert_eq!(read("stability-map.csv").lines().count(), 50);
+    assert!(read("stability-map.svg").starts_with("<svg"));
+    std::fs::remove_dir_all(folder).unwrap();
+    assert!(refuses(&["stability", "--map", "--from", "1", "--to", "-1"], 2).contains("below"));
+}
+
+#[test]
 fn choices_lists_what_set_understands() {
     let text = succeeds(&["choices"]);
     let listed = json(&["choices", "--json"]);

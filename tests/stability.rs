@@ -513,7 +513,7 @@ fn a_product_of_two_stable_filters_is_unstable() {
     for matrix in &matrices {
         assert_eq!(has_radius_below(&rows_of(matrix), &rational("76/100")), Some(true));
     }
-    // λ(64λ² + 71λ + 1)/64 is −6/64 · (−1) at −1, and −∞ far left: a root below −1.
+    // λ(64λ² + 71λ + 1)/64 is 6/64 at −1 and negative far below: a root below −1.
     let both = product(&[1, 0], &matrices);
     let polynomial = characteristic_polynomial(&rows_of(&both));
     assert_eq!(polynomial, ["0", "1/64", "71/64", "1"].map(rational));

@@ -33,8 +33,8 @@ const TOO_LITTLE: (f64, f64, f64) = (0.0, 114.0, 178.0);
 const TOO_MUCH: (f64, f64, f64) = (213.0, 94.0, 0.0);
 const NO_PREDICTION: RGBColor = RGBColor(120, 120, 120);
 
-/// Both figures for a scan time of two seconds: the algorithm as it makes sense (the weights of (1) in step 3) and corrected, beside simulations
-/// that start at the truth, and corrected beside simulations with which the manoeuvre begins.
+/// Both figures for a scan time of two seconds: the algorithm with the weights of (1) in step 3, and corrected, beside simulations that
+/// start at the truth, and corrected beside simulations with which the manoeuvre begins.
 ///
 /// # Errors
 ///

@@ -2,16 +2,16 @@
 //!
 //! After this file the reader knows the six steps as they are printed, what is corrected in them, and what stays an approximation.
 //!
-//! | step | printed                                                     | corrected                                                          |
-//! |------|-------------------------------------------------------------|--------------------------------------------------------------------|
-//! | 2    | errors of two filters that stand alone, (7)                  | second moments of both errors together, with the mixing            |
-//! | 3    | spread of the means (μⁱˡ)² Pᵉˡ                               | (μˡ∣ʲ)² Dⁱˡ with the gap D of the two estimates                     |
-//! | 4    | innovation of constant velocity biased by a t²/2, variance s | its bias and its variance under step 2                              |
-//! | 6    | Σ μⁱ Pᵉⁱ, an upper bound                                     | Σᵢⱼ μᵢ μⱼ E eⁱ eʲᵀ, the error of the combined estimate              |
+//! | step | printed                                                      | corrected                                               |
+//! |------|--------------------------------------------------------------|---------------------------------------------------------|
+//! | 2    | errors of two filters that stand alone, (7)                  | second moments of both errors together, with the mixing |
+//! | 3    | spread of the means (μⁱˡ)² Pᵉˡ                               | (μˡ∣ʲ)² Dⁱˡ with the gap D of the two estimates         |
+//! | 4    | innovation of constant velocity biased by a t²/2, variance s | its bias and its variance under step 2                  |
+//! | 6    | Σ μⁱ Pᵉⁱ, an upper bound                                     | Σᵢⱼ μᵢ μⱼ E eⁱ eʲᵀ, the error of the combined estimate  |
 //!
-//! A third form has the printed steps with the weight of step 3 corrected alone, μˡ∣ʲ for μⁱˡ: most likely what the paper's program
-//! does. With the printed weight the algorithm makes no sense: as constant acceleration becomes certain, μ²¹ tends to one, and the whole
-//! error of constant velocity is added to its covariance.
+//! A third form has the printed steps with the weight of step 3 corrected alone, μˡ∣ʲ for μⁱˡ. With the printed weight the algorithm does
+//! not settle: as constant acceleration becomes certain, μ²¹ tends to one, and the whole error of constant velocity is added to the
+//! covariance of the filter that has none. With the corrected one it does, so that this may be what the paper's figures were computed with.
 //!
 //! What stays an approximation in all: probabilities and gains are constants, although they are computed from the data, and the expected
 //! probability is a ratio of expected likelihoods. A long-term error that depends on how the run began, and there are such, is beyond both.

@@ -5,12 +5,12 @@
 //!
 //! The paper's argument has four steps, each of which is a function here:
 //!
-//! | step                                                  | here                                                | it is                       |
-//! |-------------------------------------------------------|-----------------------------------------------------|-----------------------------|
-//! | the closed loop under P⁻ → P⁻ + εF ΔP Fᵀ               | [`Perturbation::closed_loop`], [`Perturbation::first_order`] | right, to first order |
-//! | the spread of the means, from the errors of the filters | [`spread_term`], [`printed_spread_bound`]            | no bound; [`spread_bound`] is |
-//! | ε = (μ¹²)²                                            | [`other_mode_weight`]                               | a definition                |
-//! | ε ≈ (1 − a)²                                          | [`printed_weight`]                                  | right only at μ₁ = μ₂ = ½    |
+//! | step                                                  | here                              | it is                         |
+//! |-------------------------------------------------------|-----------------------------------|-------------------------------|
+//! | the closed loop under P⁻ → P⁻ + ε F ΔP Fᵀ             | [`Perturbation::closed_loop`]     | right                         |
+//! | its Taylor expansion                                  | [`Perturbation::first_order`]     | right to first order          |
+//! | the spread of the means, from the filters' own errors | [`printed_spread_bound`]          | no bound; [`spread_bound`] is |
+//! | ε ≈ (1 − a)² for ε = (μ¹∣²)²                          | [`printed_weight`]                | right only at μ₁ = μ₂ = ½     |
 
 use crate::imm::probability;
 use crate::number::Field;

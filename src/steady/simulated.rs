@@ -10,6 +10,7 @@ use crate::model::acceleration::{constant_acceleration, position_matrix};
 use crate::model::{Measurement, motion::Mode};
 use crate::number::Real;
 use nalgebra::{Matrix1, Matrix3, Vector1, Vector3};
+use rayon::prelude::*;
 
 /// How the simulated filter begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -187,13 +188,13 @@ impl Grid {
         &self,
         form: Form,
         start: Start,
-        noise: impl Fn(usize) -> N,
+        noise: impl Fn(usize) -> N + Sync,
     ) -> Result<Vec<f64>, NotSimulated> {
         let one = |(index, setting): (usize, &Setting)| {
             let simulated = simulate(setting, start, noise(index))?.total();
             let predicted = predict(setting, form).map_or(f64::NAN, |predicted| predicted.total());
             Ok(100.0 * (predicted - simulated) / simulated)
         };
-        self.settings.iter().enumerate().map(one).collect()
+        self.settings.par_iter().enumerate().map(one).collect()
     }
 }

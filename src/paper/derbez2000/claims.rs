@@ -49,6 +49,7 @@ struct Evidence {
 pub fn judge(effort: Effort, progress: Progress) -> Result<Vec<Judgement>, InvalidChoice> {
     let s = specification();
     let runs = evidence(effort, progress)?;
+    let map = stability::map();
     Ok(vec![
         long_term::half_the_load(s),
         almost_as_well(s, &runs),
@@ -58,7 +59,7 @@ pub fn judge(effort: Effort, progress: Progress) -> Result<Vec<Judgement>, Inval
         long_term::proposition(s),
         stability::theorem(s),
         long_term::algorithm_accuracy(s, effort),
-        stability::stability_matrices(s),
+        stability::stability_matrices(s, &map),
         stability::prior_data_discounted(s),
         arithmetic::moment_matching_bound(s),
         arithmetic::moment_matching_size(s),
@@ -70,7 +71,7 @@ pub fn judge(effort: Effort, progress: Progress) -> Result<Vec<Judgement>, Inval
         stability::convex_combination(s),
         stability::stable_unmixed(s),
         stability::stable_mixed(s),
-        stability::stable_mixed_unequal_noises(s),
+        stability::stable_mixed_unequal_noises(s, &map),
         stability::local_instability(s),
         arithmetic::nonlinear_filters(s),
         arithmetic::table_arithmetic(s),

@@ -1,7 +1,7 @@
 //! The claims of derbez2000 on the long-term error and on the cost.
 //!
-//! After this file the reader knows what the paper's algorithm predicts beside what a simulation shows, under each form of its steps, and how
-//! many operations the filters' own equations take.
+//! After this file the reader knows what the paper's algorithm predicts beside what a simulation shows, under each form of its steps,
+//! and how many operations the filters' own equations take.
 
 use super::{ACCELERATION, INTERVAL};
 use crate::model::acceleration::{acceleration_response, embedded_constant_velocity, position_matrix};

@@ -85,7 +85,7 @@ fn run_growing(steps: u32) -> Result<(f64, f64), String> {
 }
 
 /// Remark 1: the averaged matrices.
-pub(super) fn stability_matrices(s: &Specification) -> Judgement {
+pub(super) fn stability_matrices(s: &Specification, map: &Map) -> Judgement {
     let criteria = |mixing: [[Rational; 2]; 2], c: i64| {
         let n = |value: i64| Rational::integer(value);
         let matrices = [
@@ -101,7 +101,6 @@ pub(super) fn stability_matrices(s: &Specification) -> Judgement {
     let q = |p: i64, q: i64| Rational::new(p, q);
     let lenient = criteria([[q(1, 4), q(3, 4)], [q(3, 4), q(1, 4)]], 2);
     let strict = criteria([[q(19, 20), q(1, 20)], [q(1, 20), q(19, 20)]], 25);
-    let (map, _) = map();
     let evidence = format!(
         "Exact, A₁ = [0 0; 1 0] and A₂ = [0 c; 0 0], both nilpotent. With c = 2 and μ₁∣₁ = μ₂∣₂ = 1/4 the averaged matrices are stable ({}) and \
          the filter is not ({}): ρ² = 9/8. With c = 25, the paper's chain and equal probabilities they are not ({}) and the filter is ({}): \
@@ -146,7 +145,7 @@ pub(super) fn prior_data_discounted(s: &Specification) -> Judgement {
     let polynomial = polynomial_text(&characteristic_polynomial(&rows_of(&(&matrices[0] * &matrices[1]))));
     let evidence = format!(
         "Steady gains with θ = 3/4 (CV, q = 1/36) and θ = 1/6 (CA, q = 15625/441), R = t = 1: each (I − KH)F is stable, and their product has the \
-         characteristic polynomial {polynomial}, which is negative at −1 times −1: a root below −1, of magnitude 1.095. Each matrix has a norm \
+         characteristic polynomial {polynomial}, which is positive at −1 and negative far below it: a root of −1.095. Each matrix has a norm \
          in which it contracts; the two have no common one. The sentence is true where the gains converge to one stable matrix, as in a single Kalman \
          filter.",
     );
@@ -251,15 +250,14 @@ fn decided(interval: &str, measurement: &str, velocity: &str) -> Option<Joint> {
     Some(filters.decide(Depth::default()))
 }
 
-fn map() -> (Map, [usize; 3]) {
-    let map = Map::new(MAP.0, MAP.1, Depth::default(), &|| ());
-    let counts = map.counts();
-    (map, counts)
+/// The map of the ledger.
+pub(super) fn map() -> Map {
+    Map::new(MAP.0, MAP.1, Depth::default(), &|| ())
 }
 
 /// The mixed reading at unequal noises.
-pub(super) fn stable_mixed_unequal_noises(s: &Specification) -> Judgement {
-    let (_, [stable, unstable, undecided]) = map();
+pub(super) fn stable_mixed_unequal_noises(s: &Specification, map: &Map) -> Judgement {
+    let [stable, unstable, undecided] = map.counts();
     let figure_2 = ["2", "10", "40"].map(|q| {
         let is_certified = ["1", "2"]
             .iter()
