@@ -16,6 +16,8 @@
 //!
 //! So V stays bounded, |eᵢ|² ≤ V ‖C‖, and with the errors the spread and P⁰ʲ. For a measured position alone, H has no full column rank:
 //! whether the mixed covariances of the CA-CV filter of the paper are bounded is not decided here.
+//!
+//! Evidence: `a_measurement_of_the_whole_state_bounds_the_mixed_covariances` (property).
 
 use super::TRANSITION;
 use crate::filter::fixed_gain::FixedGain;
