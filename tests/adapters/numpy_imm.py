@@ -63,6 +63,8 @@ def ready(message, options):
 def run(problem, options):
     """Runs a problem as far as it goes."""
     answer = {"type": "answer", "id": problem["id"], "steps": []}
+    if problem["filter"]["kind"] == "fixed-gain":
+        return skipped(problem, "there are no fixed gains here")
     try:
         check_problem(problem)
         arguments = arguments_of(problem, options)
@@ -80,8 +82,15 @@ def run(problem, options):
             step = imm.step(z)  # CHANGE HERE: one step of your filter
             answer["steps"].append(shown(entry["step"], step, options.show))
     except (np.linalg.LinAlgError, ValueError) as error:
+        if options.form == "information" and "Singular" in str(error):
+            return skipped(problem, "the information form needs covariances with an inverse")
         answer["error"] = f"step {len(answer['steps']) + 1}: {error}"
     return answer
+
+
+def skipped(problem, reason):
+    """No answer, and why."""
+    return {"type": "skipped", "id": problem["id"], "reason": reason}
 
 
 def arguments_of(problem, options):
