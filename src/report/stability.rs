@@ -11,8 +11,7 @@ use crate::steady::certificate::{Product, Quadratics};
 use crate::steady::gains;
 use crate::steady::map::{Map, greatest_frozen_radius};
 use crate::steady::search::spectral_radius;
-use crate::steady::verdict::{BITS, Filters, LETTERS, Verdict, word_text};
-use nalgebra::SMatrix;
+use crate::steady::verdict::{BITS, Filters, LETTERS, Verdict, rows_text, word_text};
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -213,11 +212,6 @@ fn matrices(verdict: &Verdict) -> String {
 
 fn memory_text(node: usize, length: u32) -> String {
     (0..length).rev().map(|bit| LETTERS[node >> bit & 1]).collect()
-}
-
-fn rows_text(form: &SMatrix<Rational, 3, 3>) -> String {
-    let row = |i: usize| (0..3).map(|j| form[(i, j)].to_string()).collect::<Vec<_>>().join(" ");
-    format!("[{}]", [0, 1, 2].map(row).join("; "))
 }
 
 /// The answer for programs.

@@ -7,7 +7,7 @@ use super::certificate::{NotProven, Product, Quadratics};
 use super::pair::{acceleration_matrix, velocity_matrix};
 use super::search;
 use crate::number::{Enclosure, Field, Rational};
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, SMatrix};
 
 /// The letters of the two filters in words.
 pub const LETTERS: [char; 2] = ['v', 'a'];
@@ -57,6 +57,12 @@ impl Default for Depth {
             memory: 4,
         }
     }
+}
+
+/// A form by rows, for people.
+pub fn rows_text(form: &SMatrix<Rational, 3, 3>) -> String {
+    let row = |i: usize| (0..3).map(|j| form[(i, j)].to_string()).collect::<Vec<_>>().join(" ");
+    format!("[{}]", [0, 1, 2].map(row).join("; "))
 }
 
 /// A word in the letters of the filters.

@@ -10,6 +10,7 @@ use crate::paper::specification::{Specification, Table};
 use crate::paper::verdict::{Judgement, Verdict, proven_if};
 use crate::statistics::estimate::figure;
 use crate::steady::gains;
+use crate::steady::mismatch::alpha_beta_lag;
 use nalgebra::{Matrix3, SMatrix, Vector3};
 use num_traits::Zero;
 use std::fmt::Write;
@@ -23,9 +24,9 @@ use std::fmt::Write;
 /// Evidence: `without_noise_in_the_gain_calculation_the_mismatched_error_is_not_bounded`.
 pub(super) fn constant_bounded_error(s: &Specification) -> Judgement {
     let [root, interval, acceleration] = ["root", "t", "a"].map(RationalFunction::unknown);
-    let mean = settled_error(&root, &interval, &acceleration);
     // Jury's conditions for a second-order filter are 0 < α, 0 < β and β < 4 − 2α; the last leaves 4θ.
     let gain = gains::alpha_beta_gain(&root, &interval);
+    let mean = alpha_beta_lag(&gain, &acceleration, &interval);
     let (alpha, beta) = (gain[0].clone(), gain[1].clone() * interval.clone());
     let [two, four] = [2, 4].map(RationalFunction::integer);
     let is_stable = four.clone() - two * alpha - beta == four * root.clone();
@@ -37,7 +38,8 @@ pub(super) fn constant_bounded_error(s: &Specification) -> Judgement {
     );
     for (noise, measurement) in [(5.0, 0.05), (5.0, 0.5), (40.0, 0.05), (2.0, 0.05)] {
         let index: f64 = gains::tracking_index(&noise, &measurement, &2.0);
-        let mean = settled_error(&gains::alpha_beta_root(&index), &2.0, &5.0);
+        let gain = gains::alpha_beta_gain(&gains::alpha_beta_root(&index), &2.0);
+        let mean = alpha_beta_lag(&gain, &5.0, &2.0);
         let _ = write!(
             evidence,
             " q = {noise}, R = {measurement}: {} m, {} m/s;",
@@ -50,16 +52,6 @@ pub(super) fn constant_bounded_error(s: &Specification) -> Judgement {
          as long as the noise in the gain calculation is not zero.",
     );
     s.judgement("derbez2000-constant-bounded-error", proven_if(is_settled), evidence)
-}
-
-/// m, where the mean error settles.
-fn settled_error<T: Field>(root: &T, interval: &T, acceleration: &T) -> Vector3<T> {
-    let gain = gains::alpha_beta_gain(root, interval);
-    let (alpha, t) = (gain[0].clone(), || interval.clone());
-    let beta = || gain[1].clone() * t();
-    let position = t() * t() * (T::one() - alpha.clone()) / beta();
-    let velocity = t() * (T::integer(2) * alpha - beta()) / (T::integer(2) * beta());
-    Vector3::new(position, velocity, T::one()) * acceleration.clone()
 }
 
 /// The mean error after one more step, from one before it: the target's acceleration is a, the filter's is zero.

@@ -51,7 +51,7 @@ pub const PHASES: [usize; 4] = [10, 10, 30, 20];
 /// The variances of range and bearing, m² and rad².
 pub const MEASUREMENT_VARIANCES: [f64; 2] = [0.0025, 0.0001];
 /// The transition matrix of the Markov chain, constant velocity first: section 3.
-pub const TRANSITION: [[f64; 2]; 2] = [[0.95, 0.05], [0.05, 0.95]];
+pub const TRANSITION: [[f64; 2]; 2] = crate::steady::map::CHAIN;
 /// Operations a cycle of IMM, fixed gain and CA, in section 4.
 pub const OPERATIONS_OF_SECTION_4: [u32; 3] = [1332, 242, 590];
 /// The same in section 4.1.

@@ -17,7 +17,7 @@ use crate::steady::pair::{acceleration_matrix, frozen_matrix, remark_1_matrix, v
 use crate::steady::polynomial::{Rows, characteristic_polynomial, has_radius_below, rows_of};
 use crate::steady::reach::{polynomial_text, unseen_part};
 use crate::steady::riccati::SteadyState;
-use crate::steady::verdict::{Depth, Filters, Verdict as Joint, word_text};
+use crate::steady::verdict::{Depth, Filters, Verdict as Joint, rows_text, word_text};
 use nalgebra::{Matrix1, Matrix2, SMatrix};
 use std::fmt::Write;
 
@@ -236,11 +236,6 @@ pub(super) fn stable_mixed(s: &Specification) -> Judgement {
          ({locked}).",
     );
     s.judgement("derbez2000-stable-mixed", proven_if(all), evidence)
-}
-
-fn rows_text(form: &SMatrix<Rational, 3, 3>) -> String {
-    let row = |i: usize| (0..3).map(|j| form[(i, j)].to_string()).collect::<Vec<_>>().join(" ");
-    format!("[{}]", [0, 1, 2].map(row).join("; "))
 }
 
 fn decided(interval: &str, measurement: &str, velocity: &str) -> Option<Joint> {
