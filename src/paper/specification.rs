@@ -345,6 +345,19 @@ pub fn derbez2000() -> &'static Specification {
     &SPECIFICATION
 }
 
+/// The specification of sustika2015.
+pub fn sustika2015() -> &'static Specification {
+    static SPECIFICATION: LazyLock<Specification> = LazyLock::new(|| {
+        parse([
+            include_str!("../../spec/sustika2015/equations.toml"),
+            include_str!("../../spec/sustika2015/tables.toml"),
+            include_str!("../../spec/sustika2015/scenario.toml"),
+            include_str!("../../spec/sustika2015/claims.toml"),
+        ])
+    });
+    &SPECIFICATION
+}
+
 /// The specification of zhu2016.
 pub fn zhu2016() -> &'static Specification {
     static SPECIFICATION: LazyLock<Specification> = LazyLock::new(|| {
