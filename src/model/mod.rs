@@ -1,14 +1,18 @@
 //! How the target moves and what the sensor sees.
 //!
 //! After this folder the reader knows the transition matrices and noise covariances of the papers' models and where they come from
-//! ([`motion`], and [`acceleration`] for one coordinate with its acceleration), the two measurements ([`measurement`]) and what happens
-//! to angles at ±π ([`angle`]).
+//! ([`motion`], and [`acceleration`] for one coordinate with its acceleration), the two measurements ([`measurement`]), how range and
+//! bearing become a position ([`conversion`]) and what that does to their noise ([`conversion_moments`]), and what happens to angles
+//! at ±π ([`angle`]).
 //!
 //! State order is [x, ẋ, y, ẏ] in metres and metres per second; turn rates are in radians per second, positive to the left.
 
 pub mod acceleration;
 pub mod angle;
+pub mod conversion;
+pub mod conversion_moments;
 pub mod measurement;
 pub mod motion;
 
+pub use conversion::Conversion;
 pub use measurement::{Measurement, PolarComponent};
