@@ -20,7 +20,8 @@ pub struct Problem<T, const N: usize, const M: usize> {
     pub transition: Vec<Vec<T>>,
     /// What the sensor sees.
     pub measurement: Measurement<T, N, M>,
-    /// R, M × M, symmetric positive definite, in products of the units of the measurement.
+    /// The measurement noise, R — sustika2015 (4), where it is diag(σ_r², σ_θ²): M × M, symmetric positive definite, in products of the
+    /// units of the measurement.
     pub measurement_noise: SMatrix<T, M, M>,
     /// The rule of a filter with points; none for the Kalman filter.
     pub rule: Option<Rule<T, N>>,

@@ -1,6 +1,6 @@
 //! What the sensor sees: a linear function of the state, range and bearing, or these converted to a position.
 //!
-//! After this file the reader knows both papers' measurements, how residuals are formed and how measurements of cubature points
+//! After this file the reader knows the papers' measurements, how residuals are formed and how measurements of cubature points
 //! are averaged when some of their components are angles ([`super::angle`]).
 
 use super::angle::wrap;
@@ -27,7 +27,7 @@ pub enum Measurement<T, const N: usize, const M: usize> {
     ///
     /// Evidence: `printed_measurement_adds_noise_to_the_matrix`.
     Linear(SMatrix<T, M, N>),
-    /// A measurement in polar coordinates — liu2017 (31): r = √(x² + y²), θ = tan⁻¹(y/x).
+    /// A measurement in polar coordinates — sustika2015 (3), liu2017 (31): r = √(x² + y²), θ = tan⁻¹(y/x).
     ///
     /// Errata: tan⁻¹(y/x) confuses opposite directions; it is atan2(y, x) here.
     Polar {
@@ -53,10 +53,10 @@ pub enum Measurement<T, const N: usize, const M: usize> {
 }
 
 impl<T: Real, const N: usize, const M: usize> Measurement<T, N, M> {
-    /// The measurement of a state without noise, h(x) — zhu2016 (35)-(41), (62), liu2017 (1), (31).
+    /// The measurement of a state without noise, h(x) — sustika2015 (2), (3), (30), zhu2016 (35)-(41), (62), liu2017 (1), (31).
     ///
     /// Evidence: `a_range_bearing_measurement_is_the_polar_form_of_the_position` (property),
-    /// `plain_arctangent_confuses_opposite_quadrants`.
+    /// `plain_arctangent_confuses_opposite_quadrants`, `printed_arctangent_converts_the_first_point_to_the_opposite_one`.
     pub fn of(&self, state: &SVector<T, N>) -> SVector<T, M> {
         match self {
             Self::Linear(h) => h * state,
@@ -114,7 +114,7 @@ impl<T: Real, const N: usize, const M: usize> Measurement<T, N, M> {
 
     /// The difference of two measurements, its angles wrapped to (−π, π].
     ///
-    /// Source: an angle's difference is an angle; both papers subtract without saying so, and liu2017's target is never near ±π.
+    /// Source: an angle's difference is an angle; the papers subtract without saying so, and liu2017's target is never near ±π.
     ///
     /// Evidence: `mirroring_the_scene_mirrors_the_answer`, `the_answer_does_not_depend_on_where_the_bearing_is_cut` (property).
     pub fn difference(&self, a: &SVector<T, M>, b: &SVector<T, M>) -> SVector<T, M> {
@@ -127,7 +127,7 @@ impl<T: Real, const N: usize, const M: usize> Measurement<T, N, M> {
         difference
     }
 
-    /// The weighted mean of measurements — zhu2016 (42)-(44), liu2017 (19).
+    /// The weighted mean of measurements — sustika2015 (31), zhu2016 (42)-(44), liu2017 (19).
     ///
     /// ```text
     /// ẑ = Σₛ wₛ Zₛ,      for an angle:  ẑ = Z_c + Σₛ wₛ wrap(Zₛ − Z_c)

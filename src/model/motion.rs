@@ -12,7 +12,7 @@
 use crate::number::{Field, Real};
 use nalgebra::{Matrix4, Matrix4x2, SMatrix};
 
-/// A mode of the target: how its state moves and how uncertain that is — liu2017 (1).
+/// A mode of the target: how its state moves and how uncertain that is — sustika2015 (1), liu2017 (1).
 ///
 /// ```text
 /// xₖ = F xₖ₋₁ + wₖ₋₁,   wₖ₋₁ ~ N(0, Q)
