@@ -32,7 +32,7 @@ use immaculate::steady::gains::{
     alpha_beta_covariance, alpha_beta_gain, alpha_beta_gamma_covariance, alpha_beta_gamma_gain, alpha_beta_gamma_index,
     alpha_beta_index, innovation_variance,
 };
-use nalgebra::{SMatrix, SVector, Vector3, matrix, vector};
+use nalgebra::{Matrix4, SMatrix, SVector, Vector3, matrix, vector};
 use num_traits::{One, Zero};
 use std::collections::BTreeMap;
 
@@ -899,6 +899,22 @@ fn the_cholesky_factor_times_its_transpose_is_the_matrix() {
 }
 
 #[test]
+fn an_entry_without_variance_has_a_row_of_zeros_in_the_square_root() {
+    // 2 by 2 blocks of [4 2; 2 10] with zeros between: in exact doubles, and in the square root of the rest alone.
+    let known = matrix![4.0, 0.0, 2.0, 0.0; 0.0, 0.0, 0.0, 0.0; 2.0, 0.0, 10.0, 0.0; 0.0, 0.0, 0.0, 0.0];
+    let root = matrix![2.0, 0.0, 0.0, 0.0; 0.0, 0.0, 0.0, 0.0; 1.0, 0.0, 3.0, 0.0; 0.0, 0.0, 0.0, 0.0];
+    assert_eq!(cholesky(&known).unwrap(), root);
+    assert_eq!(cholesky(&Matrix4::<f64>::zeros()).unwrap(), Matrix4::zeros());
+    // A variance of zero with a covariance is none, wherever the covariance stands; nor is one that is only nearly zero.
+    for (row, column, value) in [(1, 0, 1e-300), (2, 1, 1e-300), (3, 1, 1e-300), (1, 1, -1e-300)] {
+        let mut wrong = known;
+        wrong[(row, column)] = value;
+        let pivot = if row == 1 || column == 1 { 1 } else { 3 };
+        assert_eq!(cholesky(&wrong).unwrap_err().pivot, pivot, "{row}, {column}");
+    }
+}
+
+#[test]
 fn cholesky_reads_the_lower_triangle_only() {
     let lower = matrix![4.0, f64::NAN; 2.0, 10.0];
     assert_eq!(cholesky(&lower).unwrap(), matrix![2.0, 0.0; 1.0, 3.0]);
@@ -916,7 +932,7 @@ fn a_matrix_that_is_not_positive_definite_has_no_cholesky_factor() {
         assert_eq!(cholesky(&matrix).unwrap_err(), *expected);
         assert_eq!(check_positive_definite(&ldl(&matrix)).unwrap_err(), *expected);
     };
-    check2(matrix![0.0, 0.0; 0.0, 1.0], &refused(0, 2, true));
+    check2(matrix![0.0, 1.0; 1.0, 1.0], &refused(0, 2, true));
     check2(matrix![-1.0, 0.0; 0.0, 1.0], &refused(0, 2, true));
     check2(matrix![1.0, 2.0; 2.0, 1.0], &refused(1, 2, true));
     check2(matrix![4.0, 2.0; 2.0, 1.0], &refused(1, 2, true)); // singular

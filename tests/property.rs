@@ -14,6 +14,7 @@ use immaculate::model::{Measurement, PolarComponent};
 use immaculate::number::{Field, Rational, Real, Roots, Surd};
 use immaculate::rule::unscented::{Parameters, unscented, unscented_in};
 use immaculate::rule::{Rule, RuleName};
+use immaculate::statistics::fit_error::{FitForm, percentage_fit_error, position_fit_error};
 use nalgebra::{SMatrix, SVector, Vector3, vector};
 use num_traits::Zero;
 use proptest::prelude::*;
@@ -335,13 +336,14 @@ proptest! {
         prop_assert!((sum - exact.to_f64().ln()).abs() <= 16.0 * ROUNDOFF * 4.0 * 9.0_f64.ln());
     }
 
-    /// The first pivot that is not positive is named, and every pivot before it is right.
+    /// The first pivot that is not positive is named, and every pivot before it is right; a row of zeros is no pivot.
     #[test]
     fn the_cholesky_factor_exists_exactly_when_all_pivots_are_positive((lower, diagonal) in integer_factors(-2..=9)) {
         // Squares on the diagonal of D make the factor's diagonal integers: nothing is rounded.
         let squares = diagonal.map(|pivot| pivot * pivot.abs());
         let matrix = product(&lower, squares);
-        match (cholesky(&matrix), squares.iter().position(|&pivot| pivot <= 0)) {
+        let has_no_root = |&j: &usize| squares[j] < 0 || (squares[j] == 0 && matrix.row(j).iter().any(|entry| *entry != 0.0));
+        match (cholesky(&matrix), (0..4).find(has_no_root)) {
             (Ok(root), None) => {
                 for j in 0..4 {
                     prop_assert_eq!(root[(j, j)].to_bits(), f64::from(diagonal[j]).to_bits());
@@ -751,5 +753,97 @@ fn the_unscented_rule_of_doubles_is_the_exact_one_rounded() {
             weights.chain(covariance_weights).all(|(&a, &b)| near(a, b)),
             "{alpha:?}"
         );
+    }
+}
+
+// The percentage fit error
+
+/// Errors and truth of two coordinates over a handful of steps; no true coordinate is near zero.
+fn tracked() -> impl Strategy<Value = ([Vec<f64>; 2], [Vec<f64>; 2])> {
+    let step = (-50.0..50.0_f64, -50.0..50.0_f64, 100.0..2000.0_f64, -2000.0..-100.0_f64);
+    prop::collection::vec(step, 1..12).prop_map(|steps| {
+        let column = |of: fn(&(f64, f64, f64, f64)) -> f64| steps.iter().map(of).collect::<Vec<f64>>();
+        (
+            [column(|step| step.0), column(|step| step.1)],
+            [column(|step| step.2), column(|step| step.3)],
+        )
+    })
+}
+
+fn fit(form: FitForm, errors: &[Vec<f64>; 2], truth: &[Vec<f64>; 2]) -> f64 {
+    position_fit_error(form, [&errors[0], &errors[1]], [&truth[0], &truth[1]])
+}
+
+/// What rounding may do to a fit error: sums of at most 24 positive terms, two roots and a quotient, each a few roundings.
+const FIT_ROUNDING: f64 = 64.0 * ROUNDOFF;
+
+proptest! {
+    #![proptest_config(cases(300))]
+
+    #[test]
+    fn the_fit_error_is_zero_for_perfect_tracking_and_a_hundred_for_none((errors, truth) in tracked()) {
+        let perfect = errors.clone().map(|axis| vec![0.0; axis.len()]);
+        let nothing = truth.clone().map(|axis| axis.iter().map(|x| -x).collect());
+        for form in FitForm::ALL {
+            prop_assert_eq!(fit(form, &perfect, &truth), 0.0);
+            // The estimate 0: each coordinate has 100 %, and the forms show how they count to two.
+            let expected = match form {
+                FitForm::RootSumSquare => 100.0 * 2.0_f64.sqrt(),
+                FitForm::Sum => 200.0,
+                FitForm::JointNorm | FitForm::RootMeanSquare | FitForm::Mean => 100.0,
+            };
+            prop_assert!((fit(form, &nothing, &truth) / expected - 1.0).abs() <= FIT_ROUNDING);
+            prop_assert!(fit(form, &errors, &truth) > 0.0);
+        }
+    }
+
+    #[test]
+    fn the_fit_error_has_no_unit_and_depends_on_where_the_radar_stands(
+        (errors, truth) in tracked(),
+        exponent in -20..20_i32,
+        factor in 0.001..1000.0_f64,
+    ) {
+        let scaled = |values: &[Vec<f64>; 2], factor: f64| {
+            values.clone().map(|axis| axis.iter().map(|x| factor * x).collect::<Vec<f64>>())
+        };
+        let unit = 2.0_f64.powi(exponent);
+        // Twice as far from the radar along the same line: half the fit error of the same errors.
+        let further = scaled(&truth, 2.0);
+        // Next to the radar's own place the truth is next to nothing, and the same errors are large.
+        let nearer = truth.clone().map(|axis| axis.iter().map(|x| x / 1024.0).collect());
+        for form in FitForm::ALL {
+            let error = fit(form, &errors, &truth);
+            // Powers of two do not round, other units do.
+            prop_assert_eq!(fit(form, &scaled(&errors, unit), &scaled(&truth, unit)), error);
+            let other = fit(form, &scaled(&errors, factor), &scaled(&truth, factor));
+            prop_assert!((other / error - 1.0).abs() <= 2.0 * FIT_ROUNDING);
+            prop_assert_eq!(2.0 * fit(form, &errors, &further), error);
+            prop_assert_eq!(fit(form, &errors, &nearer), 1024.0 * error);
+        }
+        // A radar that stands 1 km to the right: the errors are the same, the measure is not.
+        let moved = [truth[0].iter().map(|x| x + 1000.0).collect(), truth[1].clone()];
+        prop_assert!(fit(FitForm::RootSumSquare, &errors, &moved) < fit(FitForm::RootSumSquare, &errors, &truth));
+    }
+
+    #[test]
+    fn the_forms_of_the_fit_error_are_ordered((errors, truth) in tracked()) {
+        let axes = [0, 1].map(|axis| percentage_fit_error(&errors[axis], &truth[axis]));
+        let [rss, joint, rms, mean, sum] = FitForm::ALL.map(|form| fit(form, &errors, &truth));
+        let at_most = |a: f64, b: f64| a <= b * (1.0 + FIT_ROUNDING);
+        let equal = |a: f64, b: f64| at_most(a, b) && at_most(b, a);
+        // Two pairs are the same but for a factor.
+        prop_assert!(equal(rss, 2.0_f64.sqrt() * rms));
+        prop_assert!(equal(sum, 2.0 * mean));
+        // The joint norm is between the coordinates, and so are the two means, of which the root mean square is the greater.
+        let (least, greatest) = (axes[0].min(axes[1]), axes[0].max(axes[1]));
+        prop_assert!(at_most(least, joint) && at_most(joint, greatest));
+        prop_assert!(at_most(least, mean) && at_most(mean, rms) && at_most(rms, greatest));
+        // The root of the sum of squares is between the worse coordinate and the sum.
+        prop_assert!(at_most(greatest, rss) && at_most(rss, sum) && at_most(sum, 2.0_f64.sqrt() * rss));
+        // With one coordinate left out they are told apart.
+        let one = [errors[0].clone(), vec![0.0; errors[1].len()]];
+        let [rss, joint, rms, mean, sum] = FitForm::ALL.map(|form| fit(form, &one, &truth));
+        prop_assert!(equal(rss, axes[0]) && equal(sum, axes[0]) && equal(2.0 * mean, axes[0]) && rms > mean);
+        prop_assert!(joint < axes[0]);
     }
 }

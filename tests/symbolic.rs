@@ -17,6 +17,10 @@ use immaculate::matrix::{ldl, quadratic_form, solve};
 use immaculate::model::motion::{
     acceleration_input, acceleration_noise, constant_velocity, integrated_noise, turn_matrix, turn_noise,
 };
+use immaculate::model::wiener::{
+    acceleration_noise_in_the_plane, constant_acceleration_in_the_plane, constant_velocity_in_the_plane, in_the_plane,
+    velocity_noise_in_the_plane,
+};
 use immaculate::number::{Field, Rational, RationalFunction, Roots, Surd};
 use immaculate::rule::simplex::{self, below_diagonal_squared, on_diagonal_squared, radial_rule, simplex};
 use immaculate::rule::sphere::{
@@ -483,6 +487,99 @@ fn a_piecewise_constant_acceleration_enters_through_its_integral() {
     assert_eq!(product(0, 0) * product(1, 1), product(0, 1) * product(1, 0));
     assert_eq!(product(2, 2) * product(3, 3), product(2, 3) * product(3, 2));
     assert!(!product(0, 0).is_zero() && !product(3, 3).is_zero());
+}
+
+#[test]
+fn the_motion_of_the_plane_is_that_of_each_coordinate() {
+    // Any matrix of one coordinate [p, ṗ, p̈], on the state [x, y, ẋ, ẏ, ẍ, ÿ].
+    let axis: Matrix3<Unknown> = Matrix3::from_fn(|row, column| unknown(&format!("a{row}{column}")));
+    let state = unknowns::<6>("x");
+    let moved = in_the_plane(&axis) * &state;
+    for coordinate in 0..2 {
+        let of = |state: &SVector<Unknown, 6>| SVector::<Unknown, 3>::from_fn(|i, _| state[2 * i + coordinate].clone());
+        assert_eq!(of(&moved), &axis * of(&state));
+        // And of nothing but itself: the other coordinate's matrix could be any.
+        assert_ne!(of(&moved), axis.transpose() * of(&state));
+    }
+}
+
+#[test]
+fn the_motions_of_the_plane_compose_over_time() {
+    let (s, t) = (unknown("s"), unknown("t"));
+    let together = s.clone() + t.clone();
+    for motion in [constant_velocity_in_the_plane, constant_acceleration_in_the_plane] {
+        assert_eq!(motion(&s) * motion(&t), motion(&together));
+        assert_ne!(motion(&s) * motion(&t), motion(&s));
+    }
+    // Without an acceleration they are the same, and what there is of one after constant velocity is none.
+    let mut still = unknowns::<6>("x");
+    still[4] = Unknown::zero();
+    still[5] = Unknown::zero();
+    let straight = constant_velocity_in_the_plane(&t) * &still;
+    assert_eq!(straight, constant_acceleration_in_the_plane(&t) * &still);
+    let forgetful = constant_velocity_in_the_plane(&t) * unknowns::<6>("x");
+    assert_eq!(forgetful.fixed_rows::<2>(4), still.fixed_rows::<2>(4));
+}
+
+#[test]
+fn noise_in_the_plane_is_its_integral() {
+    let (q, s, t) = (unknown("q"), unknown("s"), unknown("t"));
+    let together = s.clone() + t.clone();
+    let models = [
+        (
+            constant_velocity_in_the_plane as fn(&Unknown) -> _,
+            velocity_noise_in_the_plane as fn(&Unknown, &Unknown) -> _,
+            1,
+        ),
+        (constant_acceleration_in_the_plane, acceleration_noise_in_the_plane, 2),
+    ];
+    for (motion, noise, driven) in models {
+        // Over two intervals: what has been gathered is carried along, and more is gathered. With Q(0) = 0 and Q'(0) = g q gᵀ this is
+        // the integral.
+        let carried = motion(&t) * noise(&q, &s) * motion(&t).transpose();
+        assert_eq!(carried + noise(&q, &t), noise(&q, &together));
+        assert_eq!(noise(&q, &Unknown::zero()), nalgebra::Matrix6::zeros());
+        let growth = derivative(|h| noise(&q, h));
+        let mut axis = Matrix3::zeros();
+        axis[(driven, driven)] = q.clone();
+        assert_eq!(growth, in_the_plane(&axis));
+        // Noise of another density over one of the intervals is no integral.
+        let carried = motion(&t) * noise(&number(2), &s) * motion(&t).transpose();
+        assert_ne!(carried + noise(&q, &t), noise(&q, &together));
+    }
+    // The noise of the one motion does not go with the other.
+    let carried = constant_acceleration_in_the_plane(&t)
+        * velocity_noise_in_the_plane(&q, &s)
+        * constant_acceleration_in_the_plane(&t).transpose();
+    assert_eq!(
+        carried + velocity_noise_in_the_plane(&q, &t),
+        velocity_noise_in_the_plane(&q, &together),
+        "without an acceleration the two motions are the same"
+    );
+    let carried = constant_velocity_in_the_plane(&t)
+        * acceleration_noise_in_the_plane(&q, &s)
+        * constant_velocity_in_the_plane(&t).transpose();
+    assert_ne!(
+        carried + acceleration_noise_in_the_plane(&q, &t),
+        acceleration_noise_in_the_plane(&q, &together)
+    );
+}
+
+#[test]
+fn velocity_noise_in_the_plane_is_that_of_the_other_papers() {
+    let (q, t) = (unknown("q"), unknown("t"));
+    // Where [x, ẋ, y, ẏ] stand in [x, y, ẋ, ẏ, ẍ, ÿ].
+    let places = [0, 2, 1, 3];
+    let four = |matrix: nalgebra::Matrix6<Unknown>| {
+        Matrix4::from_fn(|row, column| matrix[(places[row], places[column])].clone())
+    };
+    assert_eq!(four(velocity_noise_in_the_plane(&q, &t)), integrated_noise(&q, &t));
+    assert_eq!(four(constant_velocity_in_the_plane(&t)), constant_velocity(&t));
+    assert_ne!(four(acceleration_noise_in_the_plane(&q, &t)), integrated_noise(&q, &t));
+    // There is nothing else in it.
+    let all = velocity_noise_in_the_plane(&q, &t);
+    assert_eq!(all.fixed_rows::<2>(4), SMatrix::<Unknown, 2, 6>::zeros());
+    assert_eq!(all.fixed_columns::<2>(4), SMatrix::<Unknown, 6, 2>::zeros());
 }
 
 // Kalman

@@ -265,7 +265,7 @@ fn every_alternative_changes_the_scenario() {
             let mut texts = BTreeMap::new();
             for alternative in &parameter.alternatives {
                 // In the scenario that has the parameter, where a paper has several.
-                let simulation = match &parameter.scenario {
+                let simulation = match parameter.scenarios.first() {
                     Some(scenario) => Choices::of("scenario", scenario),
                     None => Choices::default(),
                 };
@@ -422,7 +422,7 @@ fn parameters_of_one_scenario_change_that_one() {
             .iter()
             .filter(|parameter| parameter.name != "scenario")
         {
-            let belongs = parameter.scenario.as_deref().is_none_or(|of| of == scenario);
+            let belongs = parameter.belongs_to(scenario);
             for alternative in parameter.alternatives.iter().filter(|a| a.name != parameter.default) {
                 let choices = Choices::of("scenario", scenario).with(&parameter.name, &alternative.name);
                 assert_eq!(text(&choices) != unchanged, belongs, "{}", choices.describe());

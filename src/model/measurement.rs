@@ -1,9 +1,10 @@
-//! What the sensor sees: a linear function of the state, or range and bearing.
+//! What the sensor sees: a linear function of the state, range and bearing, or these converted to a position.
 //!
 //! After this file the reader knows the papers' measurements, how residuals are formed and how measurements of cubature points
 //! are averaged when some of their components are angles ([`super::angle`]).
 
 use super::angle::wrap;
+use super::conversion::Conversion;
 use crate::number::Real;
 use nalgebra::{SMatrix, SVector};
 
@@ -37,6 +38,18 @@ pub enum Measurement<T, const N: usize, const M: usize> {
         /// Where the sensor stands, in metres.
         sensor: [T; 2],
     },
+    /// Range and bearing that the filter turns into a position before it uses them, [`converted`](crate::filter::converted). To the filter
+    /// the position is what is measured: h(x) = H x, where H takes the position out of the state.
+    Converted {
+        /// What each component of z is: a range and a bearing, in either order.
+        components: [PolarComponent; M],
+        /// Which entries of the state are the position (x, y).
+        position: [usize; 2],
+        /// Where the sensor stands, in metres.
+        sensor: [T; 2],
+        /// How.
+        conversion: Conversion,
+    },
 }
 
 impl<T: Real, const N: usize, const M: usize> Measurement<T, N, M> {
@@ -59,22 +72,43 @@ impl<T: Real, const N: usize, const M: usize> Measurement<T, N, M> {
                     PolarComponent::Bearing => y.atan2(&x),
                 })
             }
+            Self::Converted { .. } => self.matrix() * state,
         }
     }
 
-    /// Whether a component is an angle.
+    /// What the sensor reports as component: a range, a bearing, or, of a linear measurement, neither.
+    pub fn reports(&self, component: usize) -> Option<PolarComponent> {
+        match self {
+            Self::Linear(_) => None,
+            Self::Polar { components, .. } | Self::Converted { components, .. } => Some(components[component]),
+        }
+    }
+
+    /// Whether the filter converts it to a position.
+    pub fn is_converted(&self) -> bool {
+        matches!(self, Self::Converted { .. })
+    }
+
+    /// Whether a component of what the filter uses is an angle; a converted measurement has none.
     pub fn is_angle(&self, component: usize) -> bool {
         match self {
-            Self::Linear(_) => false,
+            Self::Linear(_) | Self::Converted { .. } => false,
             Self::Polar { components, .. } => components[component] == PolarComponent::Bearing,
         }
     }
 
-    /// The matrix H of a linear measurement; of another the undecided one, so that nothing that needs H has an answer.
+    /// The matrix H of a linear or converted measurement; of another the undecided one, so that nothing that needs H has an answer.
     pub fn matrix(&self) -> SMatrix<T, M, N> {
         match self {
             Self::Linear(h) => h.clone(),
             Self::Polar { .. } => SMatrix::from_fn(|_, _| T::undecided()),
+            Self::Converted { position, .. } => SMatrix::from_fn(|row, column| {
+                if position.get(row) == Some(&column) {
+                    T::one()
+                } else {
+                    T::zero()
+                }
+            }),
         }
     }
 

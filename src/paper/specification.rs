@@ -122,12 +122,19 @@ pub struct Parameter {
     pub printed: String,
     /// The alternative that is used when no other is asked for.
     pub default: String,
-    /// The one of the paper's scenarios that has this parameter; none where all have.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub scenario: Option<String>,
+    /// Those of the paper's scenarios that have this parameter; empty where all have.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub scenarios: Vec<String>,
     /// All alternatives, the default among them.
     #[serde(rename = "alternative")]
     pub alternatives: Vec<Alternative>,
+}
+
+impl Parameter {
+    /// Whether one of the paper's scenarios has this parameter.
+    pub fn belongs_to(&self, scenario: &str) -> bool {
+        self.scenarios.is_empty() || self.scenarios.iter().any(|of| of == scenario)
+    }
 }
 
 /// A value of an open parameter.
@@ -314,9 +321,8 @@ impl Specification {
     pub fn alternatives_of(&self, scenario: Option<&str>) -> Vec<Choices> {
         let named = self.parameters.iter().find(|parameter| parameter.name == "scenario");
         let scenario = scenario.or(named.map(|parameter| parameter.default.as_str()));
-        let belongs = |of: &str| scenario == Some(of);
         let parameters = self.parameters.iter().filter(|parameter| parameter.name != "scenario");
-        Self::alternatives(parameters.filter(|parameter| parameter.scenario.as_deref().is_none_or(belongs)))
+        Self::alternatives(parameters.filter(|parameter| scenario.is_none_or(|scenario| parameter.belongs_to(scenario))))
     }
 
     fn alternatives<'a>(parameters: impl Iterator<Item = &'a Parameter>) -> Vec<Choices> {

@@ -3,7 +3,7 @@
 //! After this file the reader knows how a bearing goes wrong by its axes, its sign, its unit and its cut at ±π.
 
 use super::super::setup::Setup;
-use super::{draws_points, weights};
+use super::{draws_points, used, weights};
 use crate::filter::cubature;
 use crate::imm::{Problem, Step};
 use crate::model::{Measurement, PolarComponent};
@@ -61,7 +61,9 @@ const FUNCTIONS: [&str; 5] = [
 fn of_place<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
     let mut nowhere = ([0; 2], [T::zero(), T::zero()]);
     let (position, sensor) = match &mut setup.problem.measurement {
-        Measurement::Polar { position, sensor, .. } => (position, sensor),
+        Measurement::Polar { position, sensor, .. } | Measurement::Converted { position, sensor, .. } => {
+            (position, sensor)
+        }
         Measurement::Linear(_) => (&mut nowhere.0, &mut nowhere.1),
     };
     match id {
@@ -108,7 +110,7 @@ fn of_wrapping<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Se
     }
     // z − ẑ as a number
     if innovation {
-        equations.innovation = |_, _, now, j| match &now.measurement {
+        equations.innovation = |problem, _, now, j| match used(problem, now) {
             Some(z) => z - &now.predicted_measurements[j],
             None => SVector::from_fn(|_, _| T::undecided()),
         };

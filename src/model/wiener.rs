@@ -1,0 +1,145 @@
+//! Motion in the plane with the accelerations in the state: the two models of sustika2015.
+//!
+//! After this file the reader knows how the six-dimensional state [x, y, ẋ, ẏ, ẍ, ÿ] is made of two coordinates that move alike and know
+//! nothing of each other, and which noise belongs to each motion. The noise is white in continuous time: on the acceleration where the
+//! velocity is constant, so that the velocity is a Wiener process; on the rate of the acceleration where that is constant, so that the
+//! acceleration is one.
+//!
+//! ```text
+//! F = e^{At},     Q = ∫₀ᵗ e^{Aτ} g q gᵀ e^{Aᵀτ} dτ
+//! ```
+//!
+//! Units: metres, seconds. The matrices of one coordinate [p, ṗ, p̈] are 3 × 3; F of both motions is that of [`acceleration`].
+//!
+//! [`acceleration`]: super::acceleration
+
+use super::acceleration;
+use crate::number::Field;
+use nalgebra::{Matrix3, Matrix6};
+
+/// The matrix of two coordinates that move alike: A ⊗ I₂.
+///
+/// ```text
+/// row 2i + c, column 2j + d:   Aᵢⱼ where c = d, 0 where c ≠ d
+/// ```
+///
+/// Source: sustika2015, section 2.1: the state is [x y ẋ ẏ ẍ ÿ]ᵀ, so that the coordinate c of the plane changes faster than the derivative.
+///
+/// Evidence: `the_motion_of_the_plane_is_that_of_each_coordinate` (symbolic).
+pub fn in_the_plane<T: Field>(axis: &Matrix3<T>) -> Matrix6<T> {
+    Matrix6::from_fn(|row, column| {
+        if row % 2 == column % 2 {
+            axis[(row / 2, column / 2)].clone()
+        } else {
+            T::zero()
+        }
+    })
+}
+
+/// Transition matrix of constant velocity in the plane, embedded in six dimensions — sustika2015 (1).
+///
+/// ```text
+///     ⎡ 1 T 0 ⎤
+/// A = ⎢ 0 1 0 ⎥ ⊗ I₂
+///     ⎣ 0 0 0 ⎦
+/// ```
+///
+/// | paper | here       | unit | meaning               |
+/// |-------|------------|------|-----------------------|
+/// | T     | `interval` | s    | the sampling interval |
+///
+/// Why: the model has no acceleration; its estimate of one is zero, and so is the variance of it. Everything else is the model of four
+/// dimensions [x, y, ẋ, ẏ].
+///
+/// Errata: the matrix is never printed.
+///
+/// Evidence: `the_motions_of_the_plane_compose_over_time` (symbolic).
+pub fn constant_velocity_in_the_plane<T: Field>(interval: &T) -> Matrix6<T> {
+    in_the_plane(&acceleration::embedded_constant_velocity(interval))
+}
+
+/// Transition matrix of constant acceleration in the plane — sustika2015 (1).
+///
+/// ```text
+///     ⎡ 1 T T²/2 ⎤
+/// A = ⎢ 0 1 T    ⎥ ⊗ I₂
+///     ⎣ 0 0 1    ⎦
+/// ```
+///
+/// | paper | here       | unit | meaning               |
+/// |-------|------------|------|-----------------------|
+/// | T     | `interval` | s    | the sampling interval |
+///
+/// Why: e^{AT} with the generator [0 1 0; 0 0 1; 0 0 0] of either coordinate.
+///
+/// Errata: the matrix is never printed.
+///
+/// Evidence: `the_motions_of_the_plane_compose_over_time` (symbolic).
+pub fn constant_acceleration_in_the_plane<T: Field>(interval: &T) -> Matrix6<T> {
+    in_the_plane(&acceleration::constant_acceleration(interval))
+}
+
+/// Noise covariance of constant velocity in the plane, white noise on the accelerations — sustika2015 (1).
+///
+/// ```text
+///       ⎡ T³/3 T²/2 0 ⎤
+/// Q = q ⎢ T²/2 T    0 ⎥ ⊗ I₂
+///       ⎣ 0    0    0 ⎦
+/// ```
+///
+/// | paper | here       | unit  | meaning                                        |
+/// |-------|------------|-------|------------------------------------------------|
+/// | q_cv  | `density`  | m²/s³ | spectral density of the white acceleration      |
+/// | T     | `interval` | s     | the sampling interval                           |
+///
+/// Why: ∫₀ᵀ [τ; 1] q [τ; 1]ᵀ dτ per coordinate. "Psd of process noise" in table 1 is a density, so the noise is white in continuous time.
+///
+/// Errata: the matrix is never printed.
+///
+/// Evidence: `noise_in_the_plane_is_its_integral`, `velocity_noise_in_the_plane_is_that_of_the_other_papers` (symbolic).
+pub fn velocity_noise_in_the_plane<T: Field>(density: &T, interval: &T) -> Matrix6<T> {
+    let q = |power: usize, divisor: i64| moment(density, interval, power, divisor);
+    let o = T::zero;
+    #[rustfmt::skip]
+    let axis = Matrix3::new(
+        q(3, 3), q(2, 2), o(), //
+        q(2, 2), q(1, 1), o(), //
+        o(), o(), o(),
+    );
+    in_the_plane(&axis)
+}
+
+/// Noise covariance of constant acceleration in the plane, white noise on the rates of the accelerations — sustika2015 (1).
+///
+/// ```text
+///       ⎡ T⁵/20 T⁴/8 T³/6 ⎤
+/// Q = q ⎢ T⁴/8  T³/3 T²/2 ⎥ ⊗ I₂
+///       ⎣ T³/6  T²/2 T    ⎦
+/// ```
+///
+/// | paper | here       | unit  | meaning                                                |
+/// |-------|------------|-------|--------------------------------------------------------|
+/// | q_ca  | `density`  | m²/s⁵ | spectral density of the white rate of the acceleration  |
+/// | T     | `interval` | s     | the sampling interval                                   |
+///
+/// Why: ∫₀ᵀ [τ²/2; τ; 1] q [τ²/2; τ; 1]ᵀ dτ per coordinate.
+///
+/// Errata: the matrix is never printed; table 1 gives one number for both densities, whose units differ.
+///
+/// Evidence: `noise_in_the_plane_is_its_integral` (symbolic).
+pub fn acceleration_noise_in_the_plane<T: Field>(density: &T, interval: &T) -> Matrix6<T> {
+    let q = |power: usize, divisor: i64| moment(density, interval, power, divisor);
+    #[rustfmt::skip]
+    let axis = Matrix3::new(
+        q(5, 20), q(4, 8), q(3, 6), //
+        q(4, 8), q(3, 3), q(2, 2), //
+        q(3, 6), q(2, 2), q(1, 1),
+    );
+    in_the_plane(&axis)
+}
+
+/// q Tᵖ / d.
+fn moment<T: Field>(density: &T, interval: &T, power: usize, divisor: i64) -> T {
+    let product = (0..power).fold(density.clone(), |product, _| product * interval.clone());
+    product / T::integer(divisor)
+}
