@@ -322,7 +322,9 @@ impl Specification {
         let named = self.parameters.iter().find(|parameter| parameter.name == "scenario");
         let scenario = scenario.or(named.map(|parameter| parameter.default.as_str()));
         let parameters = self.parameters.iter().filter(|parameter| parameter.name != "scenario");
-        Self::alternatives(parameters.filter(|parameter| scenario.is_none_or(|scenario| parameter.belongs_to(scenario))))
+        Self::alternatives(
+            parameters.filter(|parameter| scenario.is_none_or(|scenario| parameter.belongs_to(scenario))),
+        )
     }
 
     fn alternatives<'a>(parameters: impl Iterator<Item = &'a Parameter>) -> Vec<Choices> {
