@@ -603,3 +603,39 @@ fn every_conversion_is_found_by_its_name() {
     let refused = "unbiased".parse::<Conversion>().unwrap_err();
     assert!(refused.to_string().starts_with("`unbiased` is no conversion"));
 }
+
+// What is printed
+
+/// For small σ_θ the three limits are where |ratio − 1| is 0.1 and where the bias is 0.2 in the closed forms above: √(0.1/0.75) = 0.365,
+/// √(0.1/0.15) = 0.816, √(0.1/1.75) = 0.239, and 0.4 and 0.2.
+#[test]
+fn the_table_has_the_limits_of_the_closed_forms() {
+    let table = immaculate::report::conversion::table();
+    let of = |conversion: Conversion| -> Vec<&str> {
+        let rows = table
+            .lines()
+            .filter(|line| line.trim_start().starts_with(conversion.name()));
+        // The first three tables, and their column of 0.1°.
+        rows.take(3).filter_map(|row| row.split_whitespace().nth(1)).collect()
+    };
+    assert_eq!(of(Conversion::Standard), ["0.37", "0.82", "0.40"]);
+    assert_eq!(of(Conversion::Additive), ["every", "0.24", "every"]);
+    assert_eq!(of(Conversion::Multiplicative), ["every", "0.24", "every"]);
+    assert_eq!(of(Conversion::ModifiedUnbiased), ["every", "every", "0.20"]);
+    let words = table.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        words.contains("At ρ = 0.4 its bias is -0.20 σ_r, and its mean squared error 1.12 of"),
+        "{table}"
+    );
+    assert!(table.lines().all(|line| line.chars().count() <= 100), "{table}");
+    insta::assert_snapshot!("validity_of_conversions", table);
+}
+
+#[test]
+fn the_figure_names_what_it_shows() {
+    let figure = immaculate::report::conversion::figure().expect("it can be drawn");
+    for words in Conversion::ALL.map(Conversion::name) {
+        assert!(figure.contains(words), "{words}");
+    }
+    assert!(figure.contains("σ_θ = 20°") && figure.contains("bias (σ_r)"));
+}

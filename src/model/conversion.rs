@@ -72,7 +72,9 @@ impl Conversion {
         }
     }
 
-    /// The converted position z, m — sustika2015 (20)-(21).
+    /// The converted position z, m.
+    ///
+    /// Source: [`converted_position`], which is sustika2015 (20)-(21), times [`Conversion::factor`].
     ///
     /// | symbol | here               | unit | meaning                                    |
     /// |--------|--------------------|------|--------------------------------------------|
@@ -100,7 +102,9 @@ impl Conversion {
         }
     }
 
-    /// The covariance R of the converted position, m² — sustika2015 (22)-(26).
+    /// The covariance R of the converted position, m².
+    ///
+    /// Source: [`Conversion::variances`], turned by [`in_the_plane`]; of the standard one it is sustika2015 (22)-(26).
     ///
     /// | symbol | here               | unit | meaning                                |
     /// |--------|--------------------|------|----------------------------------------|
