@@ -178,9 +178,9 @@ fn meaning() -> String {
     let text = format!(
         "The rule of thumb for the standard conversion is ρ < {RULE} and σ_θ < {RULE} rad. At ρ = {RULE} its bias is {:.2} σ_r, and its \
          mean squared error {:.2} of what it claims along the measured line of sight; at σ_θ = {RULE} rad the error is {:.2} of the claim \
-         across. Beyond the rule the standard conversion claims too little. The additive and the multiplicative one have no bias and \
-         claim too much on average; the modified unbiased one is right for a target of which nothing is known before, and has twice the \
-         bias of the standard one given the truth.",
+         across. Beyond the rule the standard conversion claims too little. The multiplicative one has no bias and the additive one \
+         hardly any, and both claim too much on average; the modified unbiased one is right for a target of which nothing is known \
+         before, and has twice the bias of the standard one given the truth.",
         small.bias, small.as_measured[0], wide.as_measured[1]
     );
     wrapped(&text, "")
