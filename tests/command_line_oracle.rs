@@ -62,9 +62,18 @@ fn a_trace_shows_every_value_with_its_equation() {
         text.contains("step 1: z = [160.0, -35.0]") && text.contains("left turn"),
         "{text}"
     );
-    for quantity in Quantity::ALL {
+    for quantity in Quantity::ALL.into_iter().filter(|quantity| !quantity.needs_conversion()) {
         let heading = format!("  {}  —  {}\n", quantity.name(), quantity.equation());
         assert!(text.contains(&heading), "{heading}");
+    }
+    assert!(!text.contains("converted"), "nothing is converted:\n{text}");
+    let converted = succeeds(&["trace", "converted.generic"]);
+    for heading in [
+        "  converted_measurement  —  sustika2015 (20)-(21)\n",
+        "  converted_covariance  —  sustika2015 (22)-(26)\n",
+        "  innovation  —  sustika2015 (18)\n",
+    ] {
+        assert!(converted.contains(heading), "{heading}{converted}");
     }
     assert!(succeeds(&["trace", "missed.one"]).contains("no detection"));
     let text = succeeds(&["trace", "step.fixed-gain"]);
