@@ -8,6 +8,7 @@ pub mod check;
 pub mod check_json;
 pub mod claims;
 pub mod figure;
+pub mod fit_error;
 pub mod long_term;
 pub mod reproduction;
 pub mod rule;
