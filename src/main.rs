@@ -215,7 +215,6 @@ fn reproduce(arguments: &Reproduce) -> Result<String, Refusal> {
     let total: usize = plan.iter().map(|(_, choices, runs)| choices.len() * runs).sum();
     let bar = progress_bar(total as u64, "reproducing");
     let advance: Progress = &|| bar.inc(1);
-
     let mut text = String::new();
     let mut values = Vec::new();
     for (paper, choices, _) in plan {

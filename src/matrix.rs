@@ -6,7 +6,8 @@
 //! - [`ldl`], P = L D Lᵀ with a unit diagonal in L, needs only + − × ÷. Gains, log-determinants and quadratic forms come
 //!   from it, so these equations run on exact rationals and on rational functions too.
 //!
-//! Both read the lower triangle only. Neither repairs a matrix: a pivot that is not positive is an error.
+//! Both read the lower triangle only. Neither repairs a matrix: a pivot that is not positive is an error. A row of zeros is no pivot: an
+//! entry of the state that is known exactly has one in its covariance, and in the square root.
 
 use crate::number::{Field, Real};
 use nalgebra::{SMatrix, SVector};
@@ -38,9 +39,12 @@ pub struct NotPositiveDefinite {
 /// Why: with x = x̂ + S ξ and ξ of zero mean and unit covariance, x has mean x̂ and covariance S Sᵀ = P. Any other square
 /// root would do as well; the lower Cholesky factor is the papers' choice and this crate's convention.
 ///
+/// An entry that is known exactly has a row and a column of zeros in P, and so in S: the acceleration of a constant velocity motion that
+/// shares the state of another. The formula is then that of the other entries alone.
+///
 /// # Errors
 ///
-/// [`NotPositiveDefinite`] when a pivot is not positive.
+/// [`NotPositiveDefinite`] when the pivot of another row is not positive.
 ///
 /// # Examples
 ///
@@ -53,10 +57,14 @@ pub struct NotPositiveDefinite {
 /// ```
 ///
 /// Evidence: `the_cholesky_factor_times_its_transpose_is_the_matrix` (exact),
+/// `an_entry_without_variance_has_a_row_of_zeros_in_the_square_root` (exact),
 /// `a_matrix_that_is_not_positive_definite_has_no_cholesky_factor`.
 pub fn cholesky<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> Result<SMatrix<T, N, N>, NotPositiveDefinite> {
     let mut root = SMatrix::<T, N, N>::zeros();
     for j in 0..N {
+        if is_row_of_zeros(matrix, j) {
+            continue;
+        }
         let mut pivot = matrix[(j, j)].clone();
         for k in 0..j {
             pivot -= root[(j, k)].clone() * root[(j, k)].clone();
@@ -72,6 +80,11 @@ pub fn cholesky<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> Result<SM
         }
     }
     Ok(root)
+}
+
+/// Whether row j of a symmetric matrix, of which the lower triangle is read, has nothing but zeros.
+fn is_row_of_zeros<T: Field, const N: usize>(matrix: &SMatrix<T, N, N>, j: usize) -> bool {
+    matrix[(j, j)].is_zero() && (0..N).all(|i| matrix[(i.max(j), i.min(j))].is_zero())
 }
 
 /// A pivot must be known to be positive.
@@ -237,6 +250,13 @@ pub fn mirrored<T: Field, const N: usize>(lower: SMatrix<T, N, N>) -> SMatrix<T,
         }
     }
     matrix
+}
+
+/// A symmetric matrix is positive definite when all its pivots are positive.
+///
+/// Source: [`check_positive_definite`].
+pub fn is_positive_definite<T: Field + PartialOrd, const N: usize>(matrix: &SMatrix<T, N, N>) -> bool {
+    check_positive_definite(&ldl(matrix)).is_ok()
 }
 
 /// A matrix is symmetric when it equals its transpose entry by entry.

@@ -5,7 +5,7 @@
 
 mod common;
 
-use common::{Scene, fixed_gain_scene, linear_scene, linear_scene_with, polar_scene, rule_of};
+use common::{Scene, converted_scene, fixed_gain_scene, linear_scene, linear_scene_with, polar_scene, rule_of};
 use immaculate::filter::fixed_gain::FixedGain;
 use immaculate::gaussian::Gaussian;
 use immaculate::imm::cycle::Cause;
@@ -13,7 +13,7 @@ use immaculate::imm::{Equations, Imm, Initial, InvalidProblem, Problem};
 use immaculate::matrix::{NotPositiveDefinite, cholesky};
 use immaculate::model::angle::wrap;
 use immaculate::model::motion::{Mode, coordinated_turn};
-use immaculate::model::{Measurement, PolarComponent};
+use immaculate::model::{Conversion, Measurement, PolarComponent};
 use immaculate::number::Rational;
 use immaculate::report::rule::describe;
 use immaculate::rule::gauss_hermite::gauss_hermite;
@@ -509,6 +509,75 @@ fn a_rule_is_listed_up_to_a_greatest_dimension() {
     assert!(describe(&RuleName::Simplex, "simplex-5", 3).is_ok());
 }
 
+/// The scenes of other measurements are refused by the converting table, and a scene to be converted by the others.
+#[test]
+fn what_is_to_be_converted_is_given_exactly_to_the_filters_that_convert() {
+    let refused = |scene: &Scene| scene.filter().unwrap_err().to_string();
+    let mut scene = linear_scene();
+    scene.equations = Equations::converted();
+    let sentence = "`measurement` is not to be converted, but the filter's equations convert (sustika2015 (22))";
+    assert_eq!(refused(&scene), sentence);
+    for equations in [Equations::kalman(), Equations::cubature()] {
+        let mut scene = converted_scene(Conversion::Standard, [0.0, 0.0]);
+        scene.problem.rule = polar_scene("cubature-3")
+            .problem
+            .rule
+            .filter(|_| equations.draws_points);
+        scene.equations = equations;
+        let sentence = "`measurement` is to be converted, but the filter's equations do not convert (sustika2015 (22))";
+        assert_eq!(refused(&scene), sentence);
+    }
+}
+
+#[test]
+fn a_conversion_needs_one_range_one_bearing_and_their_variances() {
+    let refused = |scene: &Scene| scene.filter().unwrap_err().to_string();
+    let mut scene = converted_scene(Conversion::Standard, [0.0, 0.0]);
+    scene.problem.measurement_noise = matrix![1600.0, 0.01; 0.01, 49e-6];
+    assert_eq!(
+        refused(&scene),
+        "`R` has a covariance between range and bearing; a conversion knows only their variances (sustika2015 (4))"
+    );
+    let mut scene = converted_scene(Conversion::Standard, [0.0, 0.0]);
+    if let Measurement::Converted { components, .. } = &mut scene.problem.measurement {
+        *components = [PolarComponent::Bearing; 2];
+    }
+    assert_eq!(
+        refused(&scene),
+        "`measurement.components` must be one range and one bearing to be converted to a position (sustika2015 (20))"
+    );
+    // Zero noises are no covariance.
+    let mut scene = converted_scene(Conversion::Standard, [0.0, 0.0]);
+    for zero in [0, 1] {
+        scene.problem.measurement_noise = Matrix2::from_diagonal(&vector![1600.0, 49e-6]);
+        scene.problem.measurement_noise[(zero, zero)] = 0.0;
+        assert_eq!(refused(&scene), "`R` is not positive definite (liu2017 (19))");
+    }
+}
+
+#[test]
+fn a_negative_range_and_a_bearing_in_degrees_are_refused() {
+    let failure = |z: Vector2<f64>| {
+        let mut sentences = Vec::new();
+        for scene in [
+            converted_scene(Conversion::Standard, [0.0, 0.0]),
+            polar_scene("cubature-3"),
+        ] {
+            sentences.push(scene.filter().unwrap().step(Some(&z)).unwrap_err().to_string());
+        }
+        assert_eq!(sentences[0], sentences[1]);
+        sentences.remove(0)
+    };
+    assert_eq!(
+        failure(vector![-3.0, 0.5]),
+        "step 1, mode `all`, liu2017 (31): the measured range -3.0 is negative; a range is a distance"
+    );
+    assert_eq!(
+        failure(vector![1414.0, 135.0]),
+        "step 1, mode `all`, liu2017 (31): the measured bearing 135.0 is outside ±2π: is it in degrees?"
+    );
+}
+
 // Coverage
 
 /// Every variant of the library's errors has a test here: a new one does not compile until it has a line in one of the lists at the
@@ -659,7 +728,7 @@ fn a_factorisation_names_its_first_bad_pivot() {
         negative.to_string(),
         "is not positive definite: pivot 2 of 2 is not positive"
     );
-    let zero = pivot_of(&Matrix2::zeros());
+    let zero = pivot_of(&matrix![0.0, 1.0; 1.0, 1.0]);
     assert_eq!((zero.pivot, zero.decided), (0, true));
     let undecided = pivot_of(&matrix![1.0, f64::NAN; f64::NAN, 1.0]);
     assert_eq!((undecided.pivot, undecided.decided), (1, false));
@@ -743,7 +812,15 @@ fn any_measurement() -> impl Strategy<Value = Measurement<f64, 2, 2>> {
         position: [x, y],
         sensor: [a, b],
     });
+    let converted =
+        (0..2_usize, 0..=2_usize, any_double(), any_double()).prop_map(|(x, y, a, b)| Measurement::Converted {
+            components: [PolarComponent::Range, PolarComponent::Bearing],
+            position: [x, y],
+            sensor: [a, b],
+            conversion: Conversion::Standard,
+        });
     prop_oneof![
+        2 => converted,
         1 => any_matrix().prop_map(Measurement::Linear),
         4 => Just(Measurement::Linear(Matrix2::identity())),
         2 => polar,
@@ -821,6 +898,7 @@ fn garbage_never_panics_and_either_errs_or_runs() {
     proptest!(config, |(((problem, initial), measurements, raw) in garbage)| {
             let mut fates = fates_seen.borrow_mut();
             let equations = match (&problem.rule, raw) {
+                (None, _) if problem.measurement.is_converted() => Equations::converted(),
                 (None, _) => Equations::kalman(),
                 (Some(_), false) => Equations::cubature(),
                 (Some(_), true) => Equations::raw_cubature(),
@@ -831,7 +909,7 @@ fn garbage_never_panics_and_either_errs_or_runs() {
                     fates.refused += 1;
                     let sentence = error.to_string();
                     prop_assert!(sentence.starts_with('`'), "{}", sentence);
-                    prop_assert!(sentence.contains("2016 (") || sentence.contains("2017 ("), "{}", sentence);
+                    prop_assert!(["2015 (", "2016 (", "2017 ("].iter().any(|year| sentence.contains(year)), "{}", sentence);
                     return Ok(());
                 }
             };
@@ -943,6 +1021,10 @@ fn problem_test(error: &InvalidProblem) -> &'static str {
         InvalidProblem::FixedGains { .. } => "fixed_gains_are_given_exactly_to_the_filters_that_need_them",
         InvalidProblem::CovarianceGiven { .. } => "a_filter_with_fixed_gains_has_no_covariance",
         InvalidProblem::RuleLengths { .. } => "a_rule_has_one_weight_a_point",
+        InvalidProblem::Conversion { .. } => "what_is_to_be_converted_is_given_exactly_to_the_filters_that_convert",
+        InvalidProblem::NotRangeAndBearing | InvalidProblem::CorrelatedNoise => {
+            "a_conversion_needs_one_range_one_bearing_and_their_variances"
+        }
         InvalidProblem::Position { .. } => "the_measured_position_is_in_the_state",
     }
 }
@@ -966,6 +1048,7 @@ fn cause_test(cause: &Cause) -> &'static str {
         Cause::NotPositiveDefinite { .. } => "a_covariance_that_stops_being_positive_definite_is_named",
         Cause::MeasurementNotFinite => "a_measurement_is_finite",
         Cause::BearingOutOfRange { .. } => "a_bearing_in_degrees_is_refused",
+        Cause::NegativeRange { .. } => "a_negative_range_and_a_bearing_in_degrees_are_refused",
         Cause::EstimateNotFinite => "an_estimate_that_overflows_is_an_error_even_without_a_detection",
         Cause::NoEvidence => "a_measurement_that_no_mode_can_explain_is_refused",
     }

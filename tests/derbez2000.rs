@@ -7,8 +7,9 @@ mod common;
 
 use common::ROUNDOFF;
 use immaculate::imm::{Equations, Imm, Initial, Problem};
+use immaculate::model::Conversion;
 use immaculate::paper::derbez2000::contestants::Noise;
-use immaculate::paper::derbez2000::radar::{Debiasing, converted_variances, polar, position};
+use immaculate::paper::derbez2000::radar::{converted_variances, polar};
 use immaculate::paper::derbez2000::relative::{Relative, Tally};
 use immaculate::paper::derbez2000::scenario::{Contestant, Coordinates, Scenario, track};
 use immaculate::paper::derbez2000::search::distance;
@@ -97,23 +98,9 @@ fn expectation(deviation: f64, f: impl Fn(f64) -> f64) -> f64 {
 }
 
 #[test]
-fn debiasing_takes_out_the_bias_that_it_names() {
-    for deviation in [0.01, 0.3_f64] {
-        let variance = deviation * deviation;
-        // Given the truth at bearing 0.
-        let shrink = expectation(deviation, f64::cos);
-        let tolerance = 1000.0 * ROUNDOFF;
-        assert!((Debiasing::Multiplicative.factor(variance) * shrink - 1.0).abs() < tolerance);
-        assert!(Debiasing::Nothing.factor(variance) * shrink < 1.0 - variance / 3.0);
-        // Given the measurement: the truth is at −v, and its bias is (shrink − 1) times where it is.
-        let bias = expectation(deviation, |v| v.cos() * (shrink - 1.0));
-        assert!((Debiasing::Additive.factor(variance) - (1.0 - bias)).abs() < tolerance);
-    }
-}
-
-#[test]
 fn the_variances_of_a_converted_measurement_are_right_to_first_order() {
     let [range, bearing] = derbez2000::MEASUREMENT_VARIANCES;
+    let position = |polar: Vector2<f64>| Conversion::Standard.position(&polar[0], &polar[1], &bearing);
     for place in [
         Vector2::new(3000.0, 400.0),
         Vector2::new(-20.0, 500.0),

@@ -32,7 +32,7 @@ use immaculate::steady::gains::{
     alpha_beta_covariance, alpha_beta_gain, alpha_beta_gamma_covariance, alpha_beta_gamma_gain, alpha_beta_gamma_index,
     alpha_beta_index, innovation_variance,
 };
-use nalgebra::{SMatrix, SVector, Vector3, matrix, vector};
+use nalgebra::{Matrix4, SMatrix, SVector, Vector3, matrix, vector};
 use num_traits::{One, Zero};
 use std::collections::BTreeMap;
 
@@ -369,6 +369,65 @@ fn unscented_rule_with_kappa_zero_is_the_third_degree_rule_and_a_centre_without_
         let for_gaussian = unscented(n, &Parameters::for_gaussian(n)).unwrap();
         assert_eq!(for_gaussian == with_centre, n == 3, "n = {n}");
     }
+}
+
+#[test]
+fn components_without_variance_change_an_unscented_rule_exactly_when_they_change_its_radius() {
+    let with = |n: usize, alpha: &Rational, kappa: &dyn Fn(usize) -> Rational| Parameters {
+        alpha: alpha.clone(),
+        beta: whole(2),
+        kappa: kappa(n),
+    };
+    let for_gaussian = |n: usize| whole(3) - whole(n);
+    let zero = |_: usize| whole(0);
+    for (n, larger) in [(1, 2), (2, 3), (3, 5), (4, 6), (5, 8)] {
+        for alpha in [whole(1), r(1, 2)] {
+            let masses = |kappa: &dyn Fn(usize) -> Rational, dimension: usize| {
+                unscented_masses(&with(dimension, &alpha, kappa), n, dimension)
+            };
+            // κ = 3 − n: the same weights in the same places, for means and for covariances, so that every sum over points is
+            // the same, whatever is measured of them.
+            assert_eq!(
+                masses(&for_gaussian, n),
+                masses(&for_gaussian, larger),
+                "{n} in {larger}"
+            );
+            // Any other κ that goes with the dimension in this way does it too; a fixed one does not.
+            let fourteen = |n: usize| whole(14) - whole(n);
+            assert_eq!(masses(&fourteen, n), masses(&fourteen, larger));
+            for fixed in [zero, |_: usize| whole(2)] {
+                assert_ne!(masses(&fixed, n), masses(&fixed, larger), "{n} in {larger}");
+            }
+        }
+    }
+
+    // Constant velocity among six components: the points along two of them weigh 4/6 and the centre −1, together −1/3.
+    let [four, six] = [4, 6].map(|n| unscented(n, &Parameters::for_gaussian(n)).unwrap().weights);
+    assert_eq!(four[..2], [r(-1, 3), r(1, 6)]);
+    assert_eq!(six[..2], [r(-1, 1), r(1, 6)]);
+    assert_eq!(six[0].clone() + whole(4) * six[1].clone(), four[0]);
+}
+
+#[test]
+fn constant_velocity_among_six_components_has_the_unscented_moments_of_four_when_kappa_is_three_minus_n() {
+    // A predicted estimate of [x, y, vx, vy], by a lower factor of its covariance, and the same with an acceleration of zero.
+    let root = matrix![3, 0, 0, 0; -1, 2, 0, 0; 1, 1, 2, 0; 2, -1, 0, 1].map(|entry| Surd::integer(entry));
+    let mean = vector![-1000, 1000, 4, 3].map(Surd::integer);
+    let mut padded_root = SMatrix::<Surd, 6, 6>::zeros();
+    padded_root.fixed_view_mut::<4, 4>(0, 0).copy_from(&root);
+    let mut padded_mean = SVector::<Surd, 6>::zeros();
+    padded_mean.fixed_rows_mut::<4>(0).copy_from(&mean);
+
+    let for_gaussian = |n: usize| whole(3) - whole(n);
+    let four = squared_range_moments(&root, &mean, for_gaussian(4));
+    let six = squared_range_moments(&padded_root, &padded_mean, for_gaussian(6));
+    assert_eq!(four, six);
+    // Not so for λ = 0, where the points of the six are at √6 and those of the four at 2.
+    let four = squared_range_moments(&root, &mean, whole(0));
+    let six = squared_range_moments(&padded_root, &padded_mean, whole(0));
+    assert_eq!(four.mean, six.mean, "of degree two, which both rules have");
+    assert_ne!(four.variance, six.variance);
+    assert_eq!(four.cross_covariance, six.cross_covariance, "of degree three");
 }
 
 #[test]
@@ -840,6 +899,22 @@ fn the_cholesky_factor_times_its_transpose_is_the_matrix() {
 }
 
 #[test]
+fn an_entry_without_variance_has_a_row_of_zeros_in_the_square_root() {
+    // 2 by 2 blocks of [4 2; 2 10] with zeros between: in exact doubles, and in the square root of the rest alone.
+    let known = matrix![4.0, 0.0, 2.0, 0.0; 0.0, 0.0, 0.0, 0.0; 2.0, 0.0, 10.0, 0.0; 0.0, 0.0, 0.0, 0.0];
+    let root = matrix![2.0, 0.0, 0.0, 0.0; 0.0, 0.0, 0.0, 0.0; 1.0, 0.0, 3.0, 0.0; 0.0, 0.0, 0.0, 0.0];
+    assert_eq!(cholesky(&known).unwrap(), root);
+    assert_eq!(cholesky(&Matrix4::<f64>::zeros()).unwrap(), Matrix4::zeros());
+    // A variance of zero with a covariance is none, wherever the covariance stands; nor is one that is only nearly zero.
+    for (row, column, value) in [(1, 0, 1e-300), (2, 1, 1e-300), (3, 1, 1e-300), (1, 1, -1e-300)] {
+        let mut wrong = known;
+        wrong[(row, column)] = value;
+        let pivot = if row == 1 || column == 1 { 1 } else { 3 };
+        assert_eq!(cholesky(&wrong).unwrap_err().pivot, pivot, "{row}, {column}");
+    }
+}
+
+#[test]
 fn cholesky_reads_the_lower_triangle_only() {
     let lower = matrix![4.0, f64::NAN; 2.0, 10.0];
     assert_eq!(cholesky(&lower).unwrap(), matrix![2.0, 0.0; 1.0, 3.0]);
@@ -857,7 +932,7 @@ fn a_matrix_that_is_not_positive_definite_has_no_cholesky_factor() {
         assert_eq!(cholesky(&matrix).unwrap_err(), *expected);
         assert_eq!(check_positive_definite(&ldl(&matrix)).unwrap_err(), *expected);
     };
-    check2(matrix![0.0, 0.0; 0.0, 1.0], &refused(0, 2, true));
+    check2(matrix![0.0, 1.0; 1.0, 1.0], &refused(0, 2, true));
     check2(matrix![-1.0, 0.0; 0.0, 1.0], &refused(0, 2, true));
     check2(matrix![1.0, 2.0; 2.0, 1.0], &refused(1, 2, true));
     check2(matrix![4.0, 2.0; 2.0, 1.0], &refused(1, 2, true)); // singular
@@ -1095,6 +1170,58 @@ fn unscented_parameters(n: usize) -> Vec<Parameters> {
     all.push(with(q(1, 1000), q(2, 1), whole(3) - whole(n)));
     all.push(with(q(1, 2), q(2, 1), whole(12) - whole(n)));
     all
+}
+
+/// The weights of an unscented rule in `dimension` components by the places of its points, when only the first `n` components have a
+/// variance, here one, so that the others leave no trace: means' weights and covariances', as lists of places and weights.
+fn unscented_masses(parameters: &Parameters, n: usize, dimension: usize) -> Vec<(Vec<Surd>, [Rational; 2])> {
+    let rule = unscented(dimension, parameters).unwrap();
+    let mut masses: Vec<(Vec<Surd>, [Rational; 2])> = Vec::new();
+    for (s, point) in rule.points.iter().enumerate() {
+        let place = &point[..n];
+        let weights = [&rule.weights[s], &rule.covariance_weights[s]];
+        if let Some((_, sums)) = masses.iter_mut().find(|(known, _)| known == place) {
+            for (sum, weight) in sums.iter_mut().zip(weights) {
+                *sum += weight.clone();
+            }
+        } else {
+            masses.push((place.to_vec(), weights.map(Clone::clone)));
+        }
+    }
+    masses
+}
+
+/// What an unscented filter computes of a measurement.
+#[derive(Debug, PartialEq)]
+struct Moments {
+    mean: Surd,
+    variance: Surd,
+    /// With the first four components of the state.
+    cross_covariance: Vec<Surd>,
+}
+
+/// The unscented moments of the squared range x² + y², a polynomial, so that they are surds.
+fn squared_range_moments<const N: usize>(
+    root: &SMatrix<Surd, N, N>,
+    mean: &SVector<Surd, N>,
+    kappa: Rational,
+) -> Moments {
+    let rule = Rule::<Surd, N>::from_exact(&unscented(N, &Parameters::of_kappa(kappa)).unwrap()).unwrap();
+    let points: Vec<_> = rule.points.iter().map(|xi| cubature::point(root, xi, mean)).collect();
+    let squared_range = |point: &SVector<Surd, N>| point[0].clone() * &point[0] + point[1].clone() * &point[1];
+    let values: Vec<_> = points.iter().map(|point| vector![squared_range(point)]).collect();
+    let value_mean = cubature::weighted_mean(&rule.weights, &values);
+    let none = matrix![Surd::zero()];
+    let variance = cubature::weighted_covariance(&rule.covariance_weights, &values, &value_mean, &none);
+    let mut cross = SVector::<Surd, N>::zeros();
+    for ((weight, point), value) in rule.covariance_weights.iter().zip(&points).zip(&values) {
+        cross += (point - mean) * ((value[0].clone() - &value_mean[0]) * weight.clone());
+    }
+    Moments {
+        mean: value_mean[0].clone(),
+        variance: variance[0].clone(),
+        cross_covariance: cross.as_slice()[..4].to_vec(),
+    }
 }
 
 /// One rule of each kind that has a degree.

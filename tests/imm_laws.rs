@@ -1050,7 +1050,7 @@ fn in_units(scene: &Scene, scale: f64) -> Scene {
     let mut other = scene.clone();
     let lengths: [f64; 2] = match &mut other.problem.measurement {
         Measurement::Linear(_) => [scale, scale],
-        Measurement::Polar { sensor, .. } => {
+        Measurement::Polar { sensor, .. } | Measurement::Converted { sensor, .. } => {
             *sensor = sensor.map(|coordinate| coordinate * scale);
             [scale, 1.0]
         }

@@ -312,6 +312,41 @@ fn plain_arctangent_confuses_opposite_quadrants() {
     assert_eq!(corrected(&vector![-1.0, 0.0]).to_bits(), PI.to_bits());
 }
 
+// sustika2015
+
+/// sustika2015 (3): tan⁻¹(y/x) where the paper's target starts and flies.
+#[test]
+fn printed_arctangent_converts_the_first_point_to_the_opposite_one() {
+    let measurement = Measurement::<f64, 2, 2>::Polar {
+        components: [PolarComponent::Range, PolarComponent::Bearing],
+        position: [0, 1],
+        sensor: [0.0, 0.0],
+    };
+    let corrected = |place: &Vector2<f64>| measurement.of(place);
+    let printed = |place: &Vector2<f64>| vector![measurement.of(place)[0], libm::atan(place[1] / place[0])];
+    // The conversion back, (20) and (21).
+    let converted = |polar: Vector2<f64>| vector![polar[0] * libm::cos(polar[1]), polar[0] * libm::sin(polar[1])];
+
+    // The numbers of the erratum: (−1000, 1000) m lies at 135°, and at −45° as printed.
+    let first = vector![-1000.0, 1000.0];
+    assert_relative(corrected(&first)[1], 0.75 * PI);
+    assert_relative(printed(&first)[1], -0.25 * PI);
+    // Table 1's velocity, (4, 3) m/s, leaves the target to the left of the radar for all of the 200 s: no point comes back.
+    for second in 0..=200 {
+        let place = first + vector![4.0, 3.0] * f64::from(second);
+        for component in 0..2 {
+            assert_relative(converted(corrected(&place))[component], place[component]);
+            assert_relative(converted(printed(&place))[component], -place[component]);
+        }
+        assert_relative(corrected(&place)[1] - printed(&place)[1], PI);
+    }
+    // To the right of the radar both are the same, and the printed form jumps by half a turn in between.
+    let [left, right] = [-1.0, 1.0].map(|x| vector![x, 1600.0]);
+    assert_relative(printed(&right)[1], corrected(&right)[1]);
+    assert!(printed(&right)[1] - printed(&left)[1] > 0.99 * PI);
+    assert!((corrected(&right)[1] - corrected(&left)[1]).abs() < 0.01 * PI);
+}
+
 // derbez2000
 
 /// derbez2000 (2): the last line starts from the mixed covariance of the step before.

@@ -9,7 +9,7 @@ use crate::model::Measurement;
 use crate::number::{Field, Real};
 use nalgebra::{SMatrix, SVector};
 
-/// A point of the estimate — zhu2016 (2)-(8), (28)-(34), liu2017 (14), (18).
+/// A point of the estimate — sustika2015 (27)-(29), zhu2016 (2)-(8), (28)-(34), liu2017 (14), (18).
 ///
 /// ```text
 /// X = S ξ + x̂
@@ -24,7 +24,8 @@ use nalgebra::{SMatrix, SVector};
 /// Why: if ξ has zero mean and unit covariance under the rule's weights, X has mean x̂ and covariance S Sᵀ.
 ///
 /// After the prediction the points are drawn afresh from the predicted mean and covariance, zhu2016 (28)-(34) and
-/// liu2017 (18): the propagated ones know nothing of the process noise.
+/// liu2017 (18): the propagated ones know nothing of the process noise. sustika2015 draws points for the measurement only and
+/// predicts by the Kalman filter's equations, which for a linear motion gives the same moments.
 ///
 /// Errata: liu2017 (14) leaves the hat off the mean, and zhu2016 (2), (28) give the centre a superfluous index (notational).
 ///
@@ -110,7 +111,7 @@ pub fn weighted_covariance<T: Field, const N: usize>(
     covariance
 }
 
-/// Innovation covariance — liu2017 (19).
+/// Innovation covariance — sustika2015 (32), liu2017 (19).
 ///
 /// ```text
 /// P_zz = Σₛ wₛ (Zₛ − ẑ)(Zₛ − ẑ)ᵀ + R
@@ -141,7 +142,7 @@ pub fn innovation_covariance<T: Real, const N: usize, const M: usize>(
     covariance
 }
 
-/// Cross-covariance of state and measurement — liu2017 (19).
+/// Cross-covariance of state and measurement — sustika2015 (33), liu2017 (19).
 ///
 /// ```text
 /// P_xz = Σₛ wₛ (χₛ − x̂⁻)(Zₛ − ẑ)ᵀ

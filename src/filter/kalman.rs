@@ -6,14 +6,14 @@ use crate::matrix::mirrored;
 use crate::number::Field;
 use nalgebra::{SMatrix, SVector};
 
-/// Predicted mean, x̂⁻ = F x̂ — derbez2000 (2).
+/// Predicted mean, x̂⁻ = F x̂ — derbez2000 (2), sustika2015 (14).
 ///
 /// Source: Kalman 1960; liu2017 (1) without noise.
 pub fn predicted_mean<T: Field, const N: usize>(transition: &SMatrix<T, N, N>, mean: &SVector<T, N>) -> SVector<T, N> {
     transition * mean
 }
 
-/// Predicted covariance, P⁻ = F P Fᵀ + Q, with its lower triangle [`mirrored`] — derbez2000 (2).
+/// Predicted covariance, P⁻ = F P Fᵀ + Q, with its lower triangle [`mirrored`] — derbez2000 (2), sustika2015 (15).
 ///
 /// Source: Kalman 1960.
 ///
@@ -26,7 +26,7 @@ pub fn predicted_covariance<T: Field, const N: usize>(
     mirrored(transition * covariance * transition.transpose() + noise)
 }
 
-/// Cross-covariance of state and measurement, C = P⁻ Hᵀ.
+/// Cross-covariance of state and measurement, C = P⁻ Hᵀ, of which the gain is made — sustika2015 (17).
 ///
 /// Source: Kalman 1960.
 pub fn cross_covariance<T: Field, const N: usize, const M: usize>(
@@ -36,7 +36,7 @@ pub fn cross_covariance<T: Field, const N: usize, const M: usize>(
     covariance * h.transpose()
 }
 
-/// Innovation covariance, S = H P⁻ Hᵀ + R — derbez2000 (4).
+/// Innovation covariance, S = H P⁻ Hᵀ + R — derbez2000 (4), sustika2015 (16).
 ///
 /// Source: Kalman 1960.
 pub fn innovation_covariance<T: Field, const N: usize, const M: usize>(

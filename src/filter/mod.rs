@@ -13,8 +13,10 @@
 //! - [`cubature`]: the same moments by points and weights, in the centred form of liu2017;
 //! - [`raw`]: the moments about the origin that zhu2016 prints, equal in exact arithmetic and poorer in floating point;
 //! - [`update`]: gain, updated mean, updated covariance, for both;
+//! - [`converted`]: range and bearing turned into a position, for the linear equations;
 //! - [`fixed_gain`]: the linear equations of the mean alone, with gain and innovation covariance that are given.
 
+pub mod converted;
 pub mod cubature;
 pub mod fixed_gain;
 pub mod kalman;

@@ -6,7 +6,7 @@ use crate::matrix::{Ldl, mirrored, solve};
 use crate::number::Field;
 use nalgebra::{SMatrix, SVector};
 
-/// Gain — derbez2000 (2), zhu2016 (51), liu2017 (20).
+/// Gain — derbez2000 (2), sustika2015 (17), (34), zhu2016 (51), liu2017 (20).
 ///
 /// ```text
 /// W = C S⁻¹
@@ -28,7 +28,7 @@ pub fn gain<T: Field, const N: usize, const M: usize>(
     solve(innovation_covariance, &cross_covariance.transpose()).transpose()
 }
 
-/// Updated mean — derbez2000 (2), (8), zhu2016 (52), liu2017 (20).
+/// Updated mean — derbez2000 (2), (8), sustika2015 (18), (35), zhu2016 (52), liu2017 (20).
 ///
 /// ```text
 /// x̂ = x̂⁻ + W ν,   ν = z − ẑ
@@ -54,7 +54,7 @@ pub fn updated_mean<T: Field, const N: usize, const M: usize>(
     mean + gain * innovation
 }
 
-/// Updated covariance — derbez2000 (2), zhu2016 (53), liu2017 (20).
+/// Updated covariance — derbez2000 (2), sustika2015 (19), (36), zhu2016 (53), liu2017 (20).
 ///
 /// ```text
 /// P = P⁻ − W S Wᵀ

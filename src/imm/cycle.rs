@@ -6,7 +6,7 @@
 use super::quantity::Quantity;
 use super::{Equations, Initial, InvalidProblem, Problem, Step};
 use crate::matrix::{NotPositiveDefinite, all_finite, is_finite};
-use crate::model::Measurement;
+use crate::model::{Measurement, PolarComponent};
 use crate::number::Real;
 use nalgebra::SVector;
 
@@ -51,6 +51,12 @@ pub enum Cause {
     /// The measurement has an entry that is not finite.
     #[error("the measurement has an entry that is not finite")]
     MeasurementNotFinite,
+    /// A range below zero.
+    #[error("the measured range {range} is negative; a range is a distance")]
+    NegativeRange {
+        /// The range.
+        range: String,
+    },
     /// A bearing outside two turns of zero.
     #[error("the measured bearing {bearing} is outside ±2π: is it in degrees?")]
     BearingOutOfRange {
@@ -121,7 +127,11 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
                 given: problem.fixed_gains.is_some(),
             });
         }
-        if !equations.draws_points && !matches!(problem.measurement, Measurement::Linear(_)) {
+        let is_converted = problem.measurement.is_converted();
+        if equations.converts != is_converted {
+            return Err(InvalidProblem::Conversion { given: is_converted });
+        }
+        if !equations.draws_points && !is_converted && !matches!(problem.measurement, Measurement::Linear(_)) {
             return Err(InvalidProblem::NotLinear);
         }
         Ok(Self::unchecked(problem, equations, initial))
@@ -208,6 +218,7 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
         }
         self.combine_prediction(observer);
         if measurement.is_some() {
+            self.convert(observer);
             for j in 0..self.problem.modes.len() {
                 self.update(j, observer)?;
             }
@@ -269,6 +280,17 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
             observer.computed(Quantity::PredictedCovariance, j, now);
         }
         Ok(())
+    }
+
+    /// The measurement as a position, if the filters convert it.
+    fn convert(&mut self, observer: &mut impl Observer<T, N, M>) {
+        let (e, problem, previous, now) = self.parts();
+        if e.converts {
+            now.converted_measurement = (e.converted_measurement)(problem, previous, now);
+            observer.computed(Quantity::ConvertedMeasurement, 0, now);
+            now.converted_covariance = (e.converted_covariance)(problem, previous, now);
+            observer.computed(Quantity::ConvertedCovariance, 0, now);
+        }
     }
 
     /// One mode's update with a measurement, and its likelihood.
@@ -382,7 +404,7 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
         (&self.equations, &self.problem, &self.previous, &mut self.now)
     }
 
-    /// A measurement is finite, and its bearings are angles in radians.
+    /// A measurement is finite, its ranges are not negative, and its bearings are angles in radians.
     fn check_measurement(&self, z: &SVector<T, M>) -> Result<(), Failure> {
         let fail = |equation, cause| {
             Err(Failure {
@@ -396,11 +418,17 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
             return fail("liu2017 (1)", Cause::MeasurementNotFinite);
         }
         let two_turns = T::pi() * T::integer(2);
-        for component in (0..M).filter(|&component| self.problem.measurement.is_angle(component)) {
-            let bearing = &z[component];
-            if *bearing > two_turns || *bearing < -two_turns.clone() {
-                let bearing = format!("{bearing:?}");
-                return fail("liu2017 (31)", Cause::BearingOutOfRange { bearing });
+        for (component, value) in z.iter().enumerate() {
+            match self.problem.measurement.reports(component) {
+                Some(PolarComponent::Range) if *value < T::zero() => {
+                    let range = format!("{value:?}");
+                    return fail("liu2017 (31)", Cause::NegativeRange { range });
+                }
+                Some(PolarComponent::Bearing) if *value > two_turns || *value < -two_turns.clone() => {
+                    let bearing = format!("{value:?}");
+                    return fail("liu2017 (31)", Cause::BearingOutOfRange { bearing });
+                }
+                _ => {}
             }
         }
         Ok(())

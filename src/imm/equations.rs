@@ -2,8 +2,8 @@
 //!
 //! After this file the reader knows, for every field of [`Step`], which equation gives it from which other values. An entry sees
 //! the problem, the step before, the step so far and its mode; the wiring in [`super::cycle`] runs the entries in order.
-//! The filter proper is [`Equations::kalman`], [`Equations::cubature`] or [`Equations::fixed_gain`]; a *variant* is such a table with some
-//! entries exchanged:
+//! The filter proper is [`Equations::kalman`], [`Equations::cubature`], [`Equations::converted`] or [`Equations::fixed_gain`]; a *variant*
+//! is such a table with some entries exchanged:
 //!
 //! ```
 //! use immaculate::imm::Equations;
@@ -17,7 +17,7 @@
 use super::probability;
 use super::{Problem, Step};
 use crate::filter::fixed_gain::FixedGain;
-use crate::filter::{cubature, kalman, raw, update};
+use crate::filter::{converted, cubature, kalman, raw, update};
 use crate::gaussian::{log_density, mixture_covariance, mixture_mean};
 use crate::matrix::{NotPositiveDefinite, check_positive_definite, cholesky, ldl};
 use crate::number::Real;
@@ -39,11 +39,17 @@ pub type Factored<T, const R: usize, const C: usize> = Result<SMatrix<T, R, C>, 
 
 /// The equations of a cycle, in the order in which they are evaluated.
 #[derive(Debug, Clone, Copy)]
+#[allow(
+    clippy::struct_excessive_bools,
+    reason = "each says by itself what the wiring leaves out"
+)]
 pub struct Equations<T, const N: usize, const M: usize> {
     /// Whether the filters draw points; the Kalman filter does not.
     pub draws_points: bool,
     /// Whether the filters carry covariances; those with fixed gains do not, and the wiring skips what does not exist.
     pub keeps_covariances: bool,
+    /// Whether the filters convert the measurement before they use it.
+    pub converts: bool,
     /// Whether modes start from mixed estimates; where they do not, each starts from its own.
     pub mixes: bool,
     /// cⱼ, [`probability::predicted_mode_probability`].
@@ -70,6 +76,10 @@ pub struct Equations<T, const N: usize, const M: usize> {
     pub predicted_point: OfModeAnd<T, N, M, SVector<T, N>>,
     /// The measurement of a point, [`Measurement::of`](crate::model::Measurement::of).
     pub measured_point: OfModeAnd<T, N, M, SVector<T, M>>,
+    /// The measurement as a position, [`converted::converted_measurement`].
+    pub converted_measurement: OfAll<T, N, M, SVector<T, M>>,
+    /// R^c, [`converted::converted_covariance`].
+    pub converted_covariance: OfAll<T, N, M, SMatrix<T, M, M>>,
     /// ẑ, [`Measurement::of`](crate::model::Measurement::of) or [`Measurement::mean`](crate::model::Measurement::mean).
     pub predicted_measurement: OfMode<T, N, M, SVector<T, M>>,
     /// ν of a measurement, [`Measurement::difference`](crate::model::Measurement::difference).
@@ -119,6 +129,7 @@ impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
         Self {
             draws_points: false,
             keeps_covariances: true,
+            converts: false,
             mixes: true,
 
             predicted_mode_probability: |problem, previous, _, j| {
@@ -159,6 +170,8 @@ impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
                 cubature::point(root, &points(problem)[s], &now.predicted[j].mean)
             },
             measured_point: |problem, _, now, j, s| problem.measurement.of(&now.predicted_points[j][s]),
+            converted_measurement: |_, _, _| SVector::from_fn(|_, _| T::undecided()),
+            converted_covariance: |_, _, _| undecided(),
             predicted_measurement: |problem, _, now, j| problem.measurement.of(&now.predicted[j].mean),
             innovation: |problem, _, now, j| {
                 let Some(z) = &now.measurement else {
@@ -257,6 +270,53 @@ impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
         }
     }
 
+    /// Filters with converted measurements: Kalman filters whose measurement and noise are those of the position that was measured.
+    ///
+    /// Source: sustika2015, section 3.1.
+    ///
+    /// ```text
+    /// ν = z^c − H x̂⁻     S = H P⁻ Hᵀ + R^c
+    /// ```
+    ///
+    /// Evidence: `a_converted_filter_is_the_kalman_filter_of_the_converted_measurements` (exact).
+    pub fn converted() -> Self {
+        Self {
+            converts: true,
+            converted_measurement: |problem, _, now| {
+                let Some(z) = &now.measurement else {
+                    return SVector::from_fn(|_, _| T::undecided());
+                };
+                converted::converted_measurement(&problem.measurement, z, &problem.measurement_noise)
+            },
+            converted_covariance: |problem, _, now| {
+                let Some(z) = &now.measurement else {
+                    return undecided();
+                };
+                converted::converted_covariance(&problem.measurement, z, &problem.measurement_noise)
+            },
+            innovation: |_, _, now, j| &now.converted_measurement - &now.predicted_measurements[j],
+            innovation_covariance: |problem, _, now, j| {
+                let h = problem.measurement.matrix();
+                kalman::innovation_covariance(&h, &now.predicted[j].covariance, &now.converted_covariance)
+            },
+            ..Self::kalman()
+        }
+    }
+
+    /// The same with R^c evaluated at the combined prediction instead of at the measurement: the noise of the bearing, which moves the
+    /// measured position across, then does not turn the covariance with it.
+    ///
+    /// Source: sustika2015 does not say where (24)-(26) are evaluated; both are in use.
+    pub fn converted_at_prediction() -> Self {
+        Self {
+            converted_covariance: |problem, _, now| {
+                let at = converted::polar_position(&problem.measurement, &now.combined_prediction.mean);
+                converted::converted_covariance(&problem.measurement, &at, &problem.measurement_noise)
+            },
+            ..Self::converted()
+        }
+    }
+
     /// Filters with fixed gains that start from mixed estimates.
     ///
     /// Source: derbez2000, section 3, not numbered.
@@ -302,11 +362,13 @@ impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
         }
     }
 
-    /// The table for a problem: filters with points where it has a rule, with fixed gains (and mixed states) where it has those, else
-    /// Kalman filters.
+    /// The table for a problem: filters with points where it has a rule, with converted measurements where they are to be converted, with
+    /// fixed gains (and mixed states) where it has those, else Kalman filters.
     pub fn standard(problem: &Problem<T, N, M>) -> Self {
         if problem.rule.is_some() {
             Self::cubature()
+        } else if problem.measurement.is_converted() {
+            Self::converted()
         } else if problem.fixed_gains.is_some() {
             Self::fixed_gain()
         } else {

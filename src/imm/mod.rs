@@ -18,20 +18,24 @@
 //! - [`quantity`]: the names of the values that are traced, and what each is computed from;
 //! - [`equations`]: the table that says which equation gives each value; a variant of the filter exchanges entries of it;
 //! - [`cycle`]: the one wiring that runs a table;
+//! - [`unequal`]: what is mixed where one mode has an entry of the state that another lacks;
 //! - [`diagonal_mixing`]: a labelled stand-in for the OMTM-IMM that zhu2016 compares itself with;
+//! - [`plain_bearing`]: bearings that are never wrapped;
 //! - [`printed`]: what the papers print wrongly.
 
 pub mod cycle;
 pub mod diagonal_mixing;
 pub mod equations;
+pub mod plain_bearing;
 pub mod printed;
 pub mod probability;
 pub mod problem;
 pub mod quantity;
 pub mod record;
+pub mod unequal;
 
 pub use cycle::{Failure, Imm, Observer};
 pub use equations::Equations;
 pub use problem::{Initial, InvalidProblem, Problem};
-pub use quantity::Quantity;
+pub use quantity::{Quantity, Scope};
 pub use record::Step;

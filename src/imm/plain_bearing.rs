@@ -12,11 +12,13 @@ use nalgebra::{SMatrix, SVector};
 
 impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
     /// The table with plain bearings in all three places, as in the EKF/UKF toolbox (Hartikainen, Solin and Särkkä 2011).
+    #[must_use]
     pub fn with_plain_bearings(self) -> Self {
         self.with_plain_mean().with_plain_deviations().with_plain_innovation()
     }
 
     /// ẑ = Σₛ wₛ Zₛ.
+    #[must_use]
     pub fn with_plain_mean(self) -> Self {
         Self {
             predicted_measurement: |problem, _, now, j| {
@@ -27,6 +29,7 @@ impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
     }
 
     /// Zₛ − ẑ as a number.
+    #[must_use]
     pub fn with_plain_deviations(self) -> Self {
         Self {
             innovation_covariance: |problem, _, now, j| {
@@ -49,6 +52,7 @@ impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
     }
 
     /// z − ẑ as a number.
+    #[must_use]
     pub fn with_plain_innovation(self) -> Self {
         Self {
             innovation: |_, _, now, j| match &now.measurement {

@@ -4,7 +4,7 @@
 
 use crate::number::{Field, Real};
 
-/// Predicted mode probability — derbez2000 (3), zhu2016 (54), liu2017 (13).
+/// Predicted mode probability — derbez2000 (3), sustika2015 (5), zhu2016 (54), liu2017 (13).
 ///
 /// ```text
 /// cⱼ = Σᵢ pᵢⱼ μᵢ
@@ -36,7 +36,7 @@ pub fn predicted_mode_probability<T: Field>(transition: &[Vec<T>], mode_probabil
     sum
 }
 
-/// Mixing probability — derbez2000 (3), zhu2016 (54), liu2017 (13).
+/// Mixing probability — derbez2000 (3), sustika2015 (6), zhu2016 (54), liu2017 (13).
 ///
 /// ```text
 /// μᵢ∣ⱼ = pᵢⱼ μᵢ / cⱼ
@@ -82,7 +82,7 @@ pub fn mixing_probability<T: Field>(
     transition[previous][current].clone() * mode_probabilities[previous].clone() / predicted_mode_probability.clone()
 }
 
-/// Likelihood of a mode relative to the greatest one — zhu2016 (58), liu2017 (22).
+/// Likelihood of a mode relative to the greatest one — sustika2015 (11), zhu2016 (58), liu2017 (22).
 ///
 /// ```text
 /// Λⱼ = Lⱼ / e^m = exp( ln Lⱼ − m ),   m = max ln L over the modes that can be reached
@@ -130,7 +130,7 @@ fn greatest<T: Real>(log_likelihoods: &[T], predicted_mode_probabilities: &[T]) 
     reachable.reduce(greater).map_or_else(T::undecided, Clone::clone)
 }
 
-/// The normaliser of the mode probabilities — zhu2016 (58), liu2017 (22).
+/// The normaliser of the mode probabilities — sustika2015 (10), zhu2016 (58), liu2017 (22).
 ///
 /// ```text
 /// C = Σⱼ Λⱼ cⱼ
@@ -166,7 +166,7 @@ pub fn log_evidence<T: Real>(log_likelihoods: &[T], predicted_mode_probabilities
     greatest(log_likelihoods, predicted_mode_probabilities) + evidence.ln()
 }
 
-/// Mode probability — zhu2016 (58), liu2017 (22).
+/// Mode probability — sustika2015 (11), zhu2016 (58), liu2017 (22).
 ///
 /// ```text
 /// μⱼ = Λⱼ cⱼ / C

@@ -5,8 +5,8 @@
 
 use crate::filter::fixed_gain::FixedGain;
 use crate::gaussian::Gaussian;
-use crate::matrix::{all_finite, cholesky, is_finite, is_positive_semidefinite, is_symmetric};
-use crate::model::{Measurement, motion::Mode};
+use crate::matrix::{all_finite, is_finite, is_positive_definite, is_positive_semidefinite, is_symmetric};
+use crate::model::{Measurement, PolarComponent, motion::Mode};
 use crate::number::Real;
 use crate::rule::Rule;
 use nalgebra::SMatrix;
@@ -20,7 +20,8 @@ pub struct Problem<T, const N: usize, const M: usize> {
     pub transition: Vec<Vec<T>>,
     /// What the sensor sees.
     pub measurement: Measurement<T, N, M>,
-    /// R, M × M, symmetric positive definite, in products of the units of the measurement.
+    /// The measurement noise, R — sustika2015 (4), where it is diag(σ_r², σ_θ²): M × M, symmetric positive definite, in products of the
+    /// units of the measurement.
     pub measurement_noise: SMatrix<T, M, M>,
     /// The rule of a filter with points; none for the Kalman filter.
     pub rule: Option<Rule<T, N>>,
@@ -131,6 +132,22 @@ pub enum InvalidProblem {
         /// The field.
         field: String,
     },
+    /// A measurement to be converted was given to equations that do not convert, or another to those that do.
+    #[error("`measurement` is {} be converted, but the filter's equations {} (sustika2015 (22))", if *.given { "to" } else { "not to" }, if *.given { "do not convert" } else { "convert" })]
+    Conversion {
+        /// Whether it is to be converted.
+        given: bool,
+    },
+    /// A measurement to be converted is not one range and one bearing.
+    #[error(
+        "`measurement.components` must be one range and one bearing to be converted to a position (sustika2015 (20))"
+    )]
+    NotRangeAndBearing,
+    /// The noise of a measurement to be converted has a covariance between range and bearing.
+    #[error(
+        "`R` has a covariance between range and bearing; a conversion knows only their variances (sustika2015 (4))"
+    )]
+    CorrelatedNoise,
     /// A rule's points and weights differ in number.
     #[error("`rule` has {points} points, {weights} weights and {covariance_weights} covariance weights (zhu2016 (21))")]
     RuleLengths {
@@ -178,7 +195,7 @@ impl<T: Real, const N: usize, const M: usize> Problem<T, N, M> {
             check_finite(&estimate.mean, field, "zhu2016 (55)")?;
             let field = format!("initial.modes[{j}].covariance");
             if self.fixed_gains.is_none() {
-                check_covariance(&estimate.covariance, field, "zhu2016 (56)")?;
+                check_initial_covariance(&estimate.covariance, &self.modes[j], field)?;
             } else if estimate.covariance.iter().any(|entry| !entry.is_zero()) {
                 return Err(InvalidProblem::CovarianceGiven { field });
             }
@@ -203,7 +220,8 @@ impl<T: Real, const N: usize, const M: usize> Problem<T, N, M> {
     fn check_measurement(&self) -> Result<(), InvalidProblem> {
         match &self.measurement {
             Measurement::Linear(h) => check_finite(h, "measurement.H".into(), "zhu2016 (62)"),
-            Measurement::Polar { position, sensor, .. } => {
+            Measurement::Polar { position, sensor, .. } | Measurement::Converted { position, sensor, .. } => {
+                self.check_conversion()?;
                 if let Some(&index) = position.iter().find(|&&index| index >= N) {
                     return Err(InvalidProblem::Position { index, dimension: N });
                 }
@@ -216,6 +234,20 @@ impl<T: Real, const N: usize, const M: usize> Problem<T, N, M> {
                 })
             }
         }
+    }
+
+    fn check_conversion(&self) -> Result<(), InvalidProblem> {
+        if !self.measurement.is_converted() {
+            return Ok(());
+        }
+        let has = |wanted| (0..M).any(|row| self.measurement.reports(row) == Some(wanted));
+        if M != 2 || !has(PolarComponent::Range) || !has(PolarComponent::Bearing) {
+            return Err(InvalidProblem::NotRangeAndBearing);
+        }
+        if self.measurement_noise[(1, 0)].is_zero() {
+            return Ok(());
+        }
+        Err(InvalidProblem::CorrelatedNoise)
     }
 
     fn check_fixed_gains(&self) -> Result<(), InvalidProblem> {
@@ -326,7 +358,7 @@ fn check_covariance<T: Real, const D: usize>(
     equation: &'static str,
 ) -> Result<(), InvalidProblem> {
     check_symmetric(matrix, &field, equation)?;
-    if cholesky(matrix).is_ok() {
+    if is_positive_definite(matrix) {
         return Ok(());
     }
     Err(InvalidProblem::NotPositive {
@@ -334,6 +366,21 @@ fn check_covariance<T: Real, const D: usize>(
         kind: "definite",
         equation,
     })
+}
+
+/// An initial covariance is positive definite; an entry of the state that the mode lacks may have a row and a column of zeros.
+fn check_initial_covariance<T: Real, const D: usize>(
+    matrix: &SMatrix<T, D, D>,
+    mode: &Mode<T, D>,
+    field: String,
+) -> Result<(), InvalidProblem> {
+    let mut of_other_entries = matrix.clone();
+    for entry in (0..D).filter(|&entry| mode.lacks(entry)) {
+        if matrix.row(entry).iter().chain(&matrix.column(entry)).all(T::is_zero) {
+            of_other_entries[(entry, entry)] = T::one();
+        }
+    }
+    check_covariance(&of_other_entries, field, "zhu2016 (56)")
 }
 
 fn check_process_noise<T: Real, const D: usize>(

@@ -1,6 +1,6 @@
 //! The values of a step that are traced: their names, their shapes, and what each is computed from.
 //!
-//! After this file the reader knows the vocabulary of traces and verdicts: nineteen quantities, each given by the entry of the same
+//! After this file the reader knows the vocabulary of traces and verdicts: twenty-one quantities, each given by the entry of the same
 //! name in [`Equations`](super::Equations), in the order in which the wiring computes them. The points of cubature filters are not
 //! among them: programs draw them in different orders.
 
@@ -23,6 +23,8 @@ pub enum Quantity {
     PredictedCovariance,
     CombinedPredictionMean,
     CombinedPredictionCovariance,
+    ConvertedMeasurement,
+    ConvertedCovariance,
     PredictedMeasurement,
     Innovation,
     InnovationCovariance,
@@ -34,6 +36,22 @@ pub enum Quantity {
     ModeProbabilities,
     CombinedMean,
     CombinedCovariance,
+}
+
+/// What a kind of filter computes, of what not every kind does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Scope {
+    /// Covariances of the state; filters with fixed gains have none.
+    pub covariances: bool,
+    /// Converted measurements.
+    pub conversions: bool,
+}
+
+impl Scope {
+    /// Whether filters of this kind compute a quantity.
+    pub fn has(self, quantity: Quantity) -> bool {
+        (self.covariances || !quantity.needs_covariances()) && (self.conversions || !quantity.needs_conversion())
+    }
 }
 
 /// What a quantity is computed from: another of the same step, or of the step before. Of the same step and mode if both have a mode,
@@ -48,15 +66,15 @@ pub enum Input {
 
 use Input::{Before, Now};
 use Quantity::{
-    CombinedCovariance, CombinedMean, CombinedPredictionCovariance, CombinedPredictionMean, CrossCovariance, Gain,
-    Innovation, InnovationCovariance, LogLikelihood, MixedCovariance, MixedMean, MixingProbabilities,
-    ModeProbabilities, PredictedCovariance, PredictedMean, PredictedMeasurement, PredictedModeProbabilities,
-    UpdatedCovariance, UpdatedMean,
+    CombinedCovariance, CombinedMean, CombinedPredictionCovariance, CombinedPredictionMean, ConvertedCovariance,
+    ConvertedMeasurement, CrossCovariance, Gain, Innovation, InnovationCovariance, LogLikelihood, MixedCovariance,
+    MixedMean, MixingProbabilities, ModeProbabilities, PredictedCovariance, PredictedMean, PredictedMeasurement,
+    PredictedModeProbabilities, UpdatedCovariance, UpdatedMean,
 };
 
 impl Quantity {
     /// All, in the order in which they are computed.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 21] = [
         PredictedModeProbabilities,
         MixingProbabilities,
         MixedMean,
@@ -65,6 +83,8 @@ impl Quantity {
         PredictedCovariance,
         CombinedPredictionMean,
         CombinedPredictionCovariance,
+        ConvertedMeasurement,
+        ConvertedCovariance,
         PredictedMeasurement,
         Innovation,
         InnovationCovariance,
@@ -89,6 +109,8 @@ impl Quantity {
             PredictedCovariance => "predicted.covariance",
             CombinedPredictionMean => "combined_prediction.mean",
             CombinedPredictionCovariance => "combined_prediction.covariance",
+            ConvertedMeasurement => "converted_measurement",
+            ConvertedCovariance => "converted_covariance",
             PredictedMeasurement => "predicted_measurement",
             Innovation => "innovation",
             InnovationCovariance => "innovation_covariance",
@@ -111,6 +133,8 @@ impl Quantity {
             MixedCovariance => "zhu2016 (56), liu2017 (12)",
             PredictedMean => "zhu2016 (21), liu2017 (17)",
             PredictedCovariance => "zhu2016 (24), liu2017 (17)",
+            ConvertedMeasurement => "sustika2015 (20)-(21)",
+            ConvertedCovariance => "sustika2015 (22)-(26)",
             PredictedMeasurement => "zhu2016 (42), liu2017 (19)",
             Innovation | UpdatedMean => "zhu2016 (52), liu2017 (20)",
             InnovationCovariance => "zhu2016 (45), liu2017 (19)",
@@ -131,6 +155,8 @@ impl Quantity {
             PredictedModeProbabilities
                 | CombinedPredictionMean
                 | CombinedPredictionCovariance
+                | ConvertedMeasurement
+                | ConvertedCovariance
                 | ModeProbabilities
                 | CombinedMean
                 | CombinedCovariance
@@ -150,11 +176,23 @@ impl Quantity {
         )
     }
 
+    /// Whether it exists only where filters convert measurements.
+    pub fn needs_conversion(self) -> bool {
+        matches!(self, ConvertedMeasurement | ConvertedCovariance)
+    }
+
     /// Whether it exists only where there is a detection.
     pub fn needs_detection(self) -> bool {
         matches!(
             self,
-            PredictedMeasurement | Innovation | InnovationCovariance | CrossCovariance | Gain | LogLikelihood
+            ConvertedMeasurement
+                | ConvertedCovariance
+                | PredictedMeasurement
+                | Innovation
+                | InnovationCovariance
+                | CrossCovariance
+                | Gain
+                | LogLikelihood
         )
     }
 
@@ -168,8 +206,8 @@ impl Quantity {
             | CombinedPredictionCovariance
             | UpdatedCovariance
             | CombinedCovariance => (n, n),
-            PredictedMeasurement | Innovation => (m, 1),
-            InnovationCovariance => (m, m),
+            ConvertedMeasurement | PredictedMeasurement | Innovation => (m, 1),
+            ConvertedCovariance | InnovationCovariance => (m, m),
             CrossCovariance | Gain => (n, m),
             LogLikelihood => (1, 1),
         }
@@ -182,6 +220,7 @@ impl Quantity {
             MixedCovariance
             | PredictedCovariance
             | CombinedPredictionCovariance
+            | ConvertedCovariance
             | InnovationCovariance
             | CrossCovariance
             | Gain
@@ -196,21 +235,21 @@ impl Quantity {
         self.rank() == 2 && !matches!(self, CrossCovariance | Gain)
     }
 
-    /// What it is computed from, besides the problem and the measurement; by filters that keep covariances, or by those that do not.
-    pub fn inputs(self, has_detection: bool, keeps_covariances: bool) -> impl Iterator<Item = Input> {
+    /// What it is computed from, besides the problem and the measurement, by filters of a kind.
+    pub fn inputs(self, has_detection: bool, scope: Scope) -> impl Iterator<Item = Input> {
         let exists = move |input: &Input| {
             let (Now(quantity) | Before(quantity)) = *input;
-            keeps_covariances || !quantity.needs_covariances()
+            scope.has(quantity)
         };
         let inputs = match self {
-            InnovationCovariance | Gain if !keeps_covariances => &[],
-            _ => self.inputs_with_covariances(has_detection),
+            InnovationCovariance | Gain if !scope.covariances => &[],
+            _ => self.all_inputs(has_detection),
         };
         inputs.iter().copied().filter(exists)
     }
 
-    /// What it is computed from by filters that keep covariances.
-    fn inputs_with_covariances(self, has_detection: bool) -> &'static [Input] {
+    /// What it is computed from by filters of any kind.
+    fn all_inputs(self, has_detection: bool) -> &'static [Input] {
         match self {
             PredictedModeProbabilities => &[Before(ModeProbabilities)],
             MixingProbabilities => &[Before(ModeProbabilities), Now(PredictedModeProbabilities)],
@@ -231,10 +270,15 @@ impl Quantity {
                 Now(CombinedPredictionMean),
             ],
             PredictedMeasurement => &[Now(PredictedMean), Now(PredictedCovariance)],
-            Innovation => &[Now(PredictedMeasurement)],
-            InnovationCovariance | CrossCovariance => {
-                &[Now(PredictedMean), Now(PredictedCovariance), Now(PredictedMeasurement)]
-            }
+            ConvertedMeasurement | ConvertedCovariance => &[],
+            Innovation => &[Now(PredictedMeasurement), Now(ConvertedMeasurement)],
+            InnovationCovariance => &[
+                Now(PredictedMean),
+                Now(PredictedCovariance),
+                Now(PredictedMeasurement),
+                Now(ConvertedCovariance),
+            ],
+            CrossCovariance => &[Now(PredictedMean), Now(PredictedCovariance), Now(PredictedMeasurement)],
             Gain => &[Now(InnovationCovariance), Now(CrossCovariance)],
             UpdatedMean if has_detection => &[Now(PredictedMean), Now(Gain), Now(Innovation)],
             UpdatedMean => &[Now(PredictedMean)],
@@ -276,6 +320,8 @@ impl<T: Field, const N: usize, const M: usize> Step<T, N, M> {
             PredictedCovariance => by_rows(&self.predicted[j].covariance),
             CombinedPredictionMean => by_rows(&self.combined_prediction.mean),
             CombinedPredictionCovariance => by_rows(&self.combined_prediction.covariance),
+            ConvertedMeasurement => by_rows(&self.converted_measurement),
+            ConvertedCovariance => by_rows(&self.converted_covariance),
             PredictedMeasurement => by_rows(&self.predicted_measurements[j]),
             Innovation => by_rows(&self.innovations[j]),
             InnovationCovariance => by_rows(&self.innovation_covariances[j]),
@@ -301,6 +347,8 @@ impl<T: Field, const N: usize, const M: usize> Step<T, N, M> {
             PredictedCovariance => self.predicted[j].covariance = from_rows(values),
             CombinedPredictionMean => self.combined_prediction.mean = from_rows(values),
             CombinedPredictionCovariance => self.combined_prediction.covariance = from_rows(values),
+            ConvertedMeasurement => self.converted_measurement = from_rows(values),
+            ConvertedCovariance => self.converted_covariance = from_rows(values),
             PredictedMeasurement => self.predicted_measurements[j] = from_rows(values),
             Innovation => self.innovations[j] = from_rows(values),
             InnovationCovariance => self.innovation_covariances[j] = from_rows(values),

@@ -11,7 +11,7 @@ use nalgebra::{SMatrix, SVector};
 /// All values of step k. Lists have one entry a mode; step 0 is the initial estimate.
 ///
 /// In a step without a detection [`Step::measurement`] is none, and the values that come from a measurement are undecided. So are all
-/// covariances of filters that carry none, those with fixed gains.
+/// covariances of filters that carry none, those with fixed gains; what a filter does not draw or convert is zero.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step<T, const N: usize, const M: usize> {
     /// k, counted from 0.
@@ -38,6 +38,10 @@ pub struct Step<T, const N: usize, const M: usize> {
     pub predicted_points: Vec<Vec<SVector<T, N>>>,
     /// The measurements of these points, `[j][s]`.
     pub measured_points: Vec<Vec<SVector<T, M>>>,
+    /// The measurement as a position; of filters that convert it.
+    pub converted_measurement: SVector<T, M>,
+    /// R^c, the covariance of the converted measurement.
+    pub converted_covariance: SMatrix<T, M, M>,
     /// ẑʲ.
     pub predicted_measurements: Vec<SVector<T, M>>,
     /// ν = z − ẑ, angles wrapped.
@@ -82,6 +86,8 @@ impl<T: Field, const N: usize, const M: usize> Step<T, N, M> {
             predicted_square_roots: vec![SMatrix::zeros(); modes],
             predicted_points: vec![vec![SVector::zeros(); points]; modes],
             measured_points: vec![vec![SVector::zeros(); points]; modes],
+            converted_measurement: SVector::zeros(),
+            converted_covariance: SMatrix::zeros(),
             predicted_measurements: vec![SVector::zeros(); modes],
             innovations: vec![SVector::zeros(); modes],
             innovation_covariances: vec![SMatrix::zeros(); modes],
@@ -132,6 +138,8 @@ impl<T: Field, const N: usize, const M: usize> Step<T, N, M> {
                 value.fill(T::undecided());
             }
         }
+        self.converted_measurement.fill(T::undecided());
+        self.converted_covariance.fill(T::undecided());
         self.evidence = T::undecided();
         self.log_evidence = T::undecided();
     }

@@ -147,3 +147,38 @@ pub fn mean_squared_errors<T: Field>(factor: &T, squared_range: &T, range_varian
     let crossed = T::integer(2) * f() * attenuation.clone() - T::one();
     [f() * f() * along - crossed * squared_range.clone(), f() * f() * across]
 }
+
+/// The mean squared error along and across the line of sight as it is measured, m²: what a filter sees that trusts the measurement.
+///
+/// ```text
+/// E[(uᵀ(z − x))²] = E[(f r̂ − r cos θ̃)²] = f² (r² + σ_r²) − 2 f w r² + ½(1 + w⁴) r²
+/// E[(nᵀ(z − x))²] = E[(r sin θ̃)²]        = ½(1 − w⁴) r²
+/// ```
+///
+/// The arguments are those of [`mean_squared_errors`]; u and n are those of the measured bearing, r̂ is the measured range.
+///
+/// Why: R is diagonal in these axes, so here an error meets the variance that is claimed for it. In the axes of the truth, which nobody
+/// knows, the claim is averaged over bearings, and the large variance across leaks into the small one along.
+///
+/// Source: the squares multiplied out.
+///
+/// # Examples
+///
+/// 9.8 m² as before, plus what the turn of the axes changes: 104 − 168.2 + 75 = 10.8 m², and 25 m² across.
+///
+/// ```
+/// use immaculate::model::conversion_moments::errors_as_measured;
+///
+/// let w = 0.5_f64.sqrt().sqrt();
+/// let [along, across] = errors_as_measured(&1.0, &100.0, &4.0, &w);
+/// assert!((along - 10.8).abs() < 0.05 && (across - 25.0).abs() < 1e-12);
+/// ```
+///
+/// Evidence: `the_moments_are_those_of_range_and_bearing` (symbolic).
+pub fn errors_as_measured<T: Field>(factor: &T, squared_range: &T, range_variance: &T, attenuation: &T) -> [T; 2] {
+    let f = || factor.clone();
+    let [turned, across] = second_moments(squared_range, &T::zero(), attenuation);
+    let measured = f() * f() * (squared_range.clone() + range_variance.clone());
+    let crossed = T::integer(2) * f() * attenuation.clone() * squared_range.clone();
+    [measured - crossed + turned, across]
+}

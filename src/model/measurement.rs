@@ -1,9 +1,10 @@
-//! What the sensor sees: a linear function of the state, or range and bearing.
+//! What the sensor sees: a linear function of the state, range and bearing, or these converted to a position.
 //!
-//! After this file the reader knows both papers' measurements, how residuals are formed and how measurements of cubature points
+//! After this file the reader knows the papers' measurements, how residuals are formed and how measurements of cubature points
 //! are averaged when some of their components are angles ([`super::angle`]).
 
 use super::angle::wrap;
+use super::conversion::Conversion;
 use crate::number::Real;
 use nalgebra::{SMatrix, SVector};
 
@@ -26,7 +27,7 @@ pub enum Measurement<T, const N: usize, const M: usize> {
     ///
     /// Evidence: `printed_measurement_adds_noise_to_the_matrix`.
     Linear(SMatrix<T, M, N>),
-    /// A measurement in polar coordinates — liu2017 (31): r = √(x² + y²), θ = tan⁻¹(y/x).
+    /// A measurement in polar coordinates — sustika2015 (3), liu2017 (31): r = √(x² + y²), θ = tan⁻¹(y/x).
     ///
     /// Errata: tan⁻¹(y/x) confuses opposite directions; it is atan2(y, x) here.
     Polar {
@@ -37,13 +38,25 @@ pub enum Measurement<T, const N: usize, const M: usize> {
         /// Where the sensor stands, in metres.
         sensor: [T; 2],
     },
+    /// Range and bearing that the filter turns into a position before it uses them, [`converted`](crate::filter::converted). To the filter
+    /// the position is what is measured: h(x) = H x, where H takes the position out of the state.
+    Converted {
+        /// What each component of z is: a range and a bearing, in either order.
+        components: [PolarComponent; M],
+        /// Which entries of the state are the position (x, y).
+        position: [usize; 2],
+        /// Where the sensor stands, in metres.
+        sensor: [T; 2],
+        /// How.
+        conversion: Conversion,
+    },
 }
 
 impl<T: Real, const N: usize, const M: usize> Measurement<T, N, M> {
-    /// The measurement of a state without noise, h(x) — zhu2016 (35)-(41), (62), liu2017 (1), (31).
+    /// The measurement of a state without noise, h(x) — sustika2015 (2), (3), (30), zhu2016 (35)-(41), (62), liu2017 (1), (31).
     ///
     /// Evidence: `a_range_bearing_measurement_is_the_polar_form_of_the_position` (property),
-    /// `plain_arctangent_confuses_opposite_quadrants`.
+    /// `plain_arctangent_confuses_opposite_quadrants`, `printed_arctangent_converts_the_first_point_to_the_opposite_one`.
     pub fn of(&self, state: &SVector<T, N>) -> SVector<T, M> {
         match self {
             Self::Linear(h) => h * state,
@@ -59,28 +72,49 @@ impl<T: Real, const N: usize, const M: usize> Measurement<T, N, M> {
                     PolarComponent::Bearing => y.atan2(&x),
                 })
             }
+            Self::Converted { .. } => self.matrix() * state,
         }
     }
 
-    /// Whether a component is an angle.
+    /// What the sensor reports as component: a range, a bearing, or, of a linear measurement, neither.
+    pub fn reports(&self, component: usize) -> Option<PolarComponent> {
+        match self {
+            Self::Linear(_) => None,
+            Self::Polar { components, .. } | Self::Converted { components, .. } => Some(components[component]),
+        }
+    }
+
+    /// Whether the filter converts it to a position.
+    pub fn is_converted(&self) -> bool {
+        matches!(self, Self::Converted { .. })
+    }
+
+    /// Whether a component of what the filter uses is an angle; a converted measurement has none.
     pub fn is_angle(&self, component: usize) -> bool {
         match self {
-            Self::Linear(_) => false,
+            Self::Linear(_) | Self::Converted { .. } => false,
             Self::Polar { components, .. } => components[component] == PolarComponent::Bearing,
         }
     }
 
-    /// The matrix H of a linear measurement; of another the undecided one, so that nothing that needs H has an answer.
+    /// The matrix H of a linear or converted measurement; of another the undecided one, so that nothing that needs H has an answer.
     pub fn matrix(&self) -> SMatrix<T, M, N> {
         match self {
             Self::Linear(h) => h.clone(),
             Self::Polar { .. } => SMatrix::from_fn(|_, _| T::undecided()),
+            Self::Converted { position, .. } => SMatrix::from_fn(|row, column| {
+                if position.get(row) == Some(&column) {
+                    T::one()
+                } else {
+                    T::zero()
+                }
+            }),
         }
     }
 
     /// The difference of two measurements, its angles wrapped to (−π, π].
     ///
-    /// Source: an angle's difference is an angle; both papers subtract without saying so, and liu2017's target is never near ±π.
+    /// Source: an angle's difference is an angle; the papers subtract without saying so, and liu2017's target is never near ±π.
     ///
     /// Evidence: `mirroring_the_scene_mirrors_the_answer`, `the_answer_does_not_depend_on_where_the_bearing_is_cut` (property).
     pub fn difference(&self, a: &SVector<T, M>, b: &SVector<T, M>) -> SVector<T, M> {
@@ -93,7 +127,7 @@ impl<T: Real, const N: usize, const M: usize> Measurement<T, N, M> {
         difference
     }
 
-    /// The weighted mean of measurements — zhu2016 (42)-(44), liu2017 (19).
+    /// The weighted mean of measurements — sustika2015 (31), zhu2016 (42)-(44), liu2017 (19).
     ///
     /// ```text
     /// ẑ = Σₛ wₛ Zₛ,      for an angle:  ẑ = Z_c + Σₛ wₛ wrap(Zₛ − Z_c)

@@ -10,9 +10,9 @@
 //! where A is the generator of the motion and L puts the noise on the velocities. A state is [x, ẋ, y, ẏ].
 
 use crate::number::{Field, Real};
-use nalgebra::{Matrix4, Matrix4x2};
+use nalgebra::{Matrix4, Matrix4x2, SMatrix};
 
-/// A mode of the target: how its state moves and how uncertain that is — liu2017 (1).
+/// A mode of the target: how its state moves and how uncertain that is — sustika2015 (1), liu2017 (1).
 ///
 /// ```text
 /// xₖ = F xₖ₋₁ + wₖ₋₁,   wₖ₋₁ ~ N(0, Q)
@@ -25,9 +25,20 @@ pub struct Mode<T, const N: usize> {
     /// The mode's name.
     pub name: String,
     /// F, N × N.
-    pub transition: nalgebra::SMatrix<T, N, N>,
+    pub transition: SMatrix<T, N, N>,
     /// Q, N × N, symmetric positive semidefinite, in products of the units of the state.
-    pub noise: nalgebra::SMatrix<T, N, N>,
+    pub noise: SMatrix<T, N, N>,
+}
+
+impl<T: Field, const N: usize> Mode<T, N> {
+    /// Whether the motion has no such entry of the state: it sets it to zero, without noise, and knows it exactly ever after. That is how
+    /// models of unequal dimensions share one state, constant velocity and constant acceleration for instance.
+    ///
+    /// Source: derbez2000 (5), where the last row of F is zero.
+    pub fn lacks(&self, entry: usize) -> bool {
+        let is_zero = |matrix: &SMatrix<T, N, N>| matrix.row(entry).iter().all(T::is_zero);
+        is_zero(&self.transition) && is_zero(&self.noise)
+    }
 }
 
 /// Transition matrix of constant velocity — liu2017 (25), (26).

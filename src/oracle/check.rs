@@ -274,8 +274,7 @@ pub fn check(subject: &mut dyn Subject, selection: &Selection, progress: &dyn Fn
         .map(|(index, case, (shown, reference))| evidence_of(&cases[*index], case, shown, reference, &ready))
         .collect();
     let diagnosis = diagnose(&evidence, &conventions)?;
-    let has_covariances = asked.iter().any(|case| case.problem.filter.keeps_covariances());
-    let exists = |quantity: &Quantity| has_covariances || !quantity.needs_covariances();
+    let exists = |quantity: &Quantity| asked.iter().any(|case| case.problem.filter.scope().has(*quantity));
     let hidden = Quantity::ALL.into_iter().filter(exists).filter(|quantity| {
         !answered.iter().any(|(_, _, (shown, _))| {
             shown.all_places().any(|(step, shown_quantity, mode)| {

@@ -190,7 +190,7 @@ impl<'a> Search<'a> {
                 .candidates
                 .iter()
                 .copied()
-                .filter(|variant| variant.quantity == quantity)
+                .filter(|variant| variant.is_made_in(quantity))
                 .collect();
             let found = filter(&made_here, |variant| {
                 let mut with = chosen.clone();

@@ -24,11 +24,13 @@ pub enum Class {
     Unknown,
     /// A bearing beyond two turns.
     Angle,
+    /// A negative range.
+    Range,
 }
 
 impl Class {
     /// All classes.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Format,
         Self::Shape,
         Self::NotFinite,
@@ -37,6 +39,7 @@ impl Class {
         Self::NotPositiveDefinite,
         Self::Unknown,
         Self::Angle,
+        Self::Range,
     ];
 
     /// The name in files.
@@ -50,6 +53,7 @@ impl Class {
             Self::NotPositiveDefinite => "not-positive-definite",
             Self::Unknown => "unknown",
             Self::Angle => "angle",
+            Self::Range => "range",
         }
     }
 }

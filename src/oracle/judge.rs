@@ -426,7 +426,7 @@ fn inputs(problem: &ProblemFile, shown: &Trace, place: Place) -> (BTreeSet<Place
     let (mut hidden, mut last_shown) = (BTreeSet::new(), BTreeSet::new());
     let mut open = vec![place];
     while let Some((step, quantity, mode)) = open.pop() {
-        for input in quantity.inputs(has_detection(step), problem.filter.keeps_covariances()) {
+        for input in quantity.inputs(has_detection(step), problem.filter.scope()) {
             let (step, input, is_before) = match input {
                 Input::Now(input) => (step, input, false),
                 Input::Before(input) if step > 1 => (step - 1, input, true),

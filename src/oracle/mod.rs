@@ -9,7 +9,7 @@
 //!                                          └─▶ run along its own values ─┘        └─ variants
 //! ```
 //!
-//! - [`problem`], [`trace`], [`csv`], [`schema`], [`invalid`]: the file formats;
+//! - [`problem`] and its checks, [`trace`], [`csv`], [`schema`], [`invalid`]: the file formats;
 //! - [`shape`], [`setup`], [`run`]: from a file to a run in any number system, by itself or along another program's values;
 //! - [`certify`], [`noise`], [`scale`]: the exact values, how far rounding moves them, and in which unit an error is large;
 //! - [`case`]: the published cases; [`certificate`]: certificates of joint stability as files;
@@ -39,3 +39,4 @@ pub mod subject;
 pub mod trace;
 mod unreadable;
 pub mod variant;
+mod well_formed;

@@ -1,12 +1,12 @@
 //! The problem file: what a case gives to a filter, read, checked and put into any number system.
 //!
-//! After this file the reader knows the format `immaculate-problem/1` from the code's side (`spec/formats.md` is its description)
-//! and how every defect of a file becomes one sentence with the place inside the file.
+//! After this file the reader knows the format `immaculate-problem/1` from the code's side (`spec/formats.md` is its description). What
+//! must be true of a file is in [`super::well_formed`].
 
 use super::invalid::{Class, Invalid};
 use super::trace::Dimensions;
-use super::{shape, unreadable};
-use crate::imm::{InvalidProblem, Quantity};
+use super::unreadable;
+use crate::imm::{Quantity, Scope};
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
@@ -123,6 +123,11 @@ pub enum FilterFile {
         /// κ.
         kappa: f64,
     },
+    /// Linear motion; range and bearing that are turned into a position.
+    Converted {
+        /// `standard`, `additive`, `multiplicative` or `modified-unbiased`.
+        conversion: String,
+    },
     /// Linear motion and measurement, with gains that are given and no covariances.
     FixedGain {
         /// `mixed` or `unmixed`: whether a mode starts from a mixed estimate, or from its own.
@@ -143,12 +148,13 @@ pub struct FixedGainFile {
 }
 
 impl FilterFile {
-    /// The kind's short name: `kalman`, `unscented`, the rule's, `fixed-gain` or, where no estimates are mixed, `fixed-gain-unmixed`.
+    /// The kind's short name: `kalman`, `unscented`, the rule's, `converted`, `fixed-gain` or, where no estimates are mixed, `fixed-gain-unmixed`.
     pub fn name(&self) -> &str {
         match self {
             Self::Kalman {} => "kalman",
             Self::Cubature { rule } => rule,
             Self::Unscented { .. } => "unscented",
+            Self::Converted { .. } => "converted",
             Self::FixedGain { mixing, .. } if mixing == UNMIXED => "fixed-gain-unmixed",
             Self::FixedGain { .. } => "fixed-gain",
         }
@@ -160,13 +166,19 @@ impl FilterFile {
             (Self::FixedGain { .. }, Quantity::InnovationCovariance) => "derbez2000 (4), given",
             (Self::FixedGain { .. }, Quantity::Gain) => "derbez2000, section 3, given",
             (Self::FixedGain { .. }, Quantity::UpdatedMean) => "derbez2000, section 3",
+            (Self::Converted { .. }, Quantity::Innovation | Quantity::PredictedMeasurement) => "sustika2015 (18)",
+            (Self::Converted { .. }, Quantity::InnovationCovariance) => "sustika2015 (16)",
+            (Self::Converted { .. }, Quantity::CrossCovariance | Quantity::Gain) => "sustika2015 (17)",
             _ => quantity.equation(),
         }
     }
 
-    /// Whether it carries covariances.
-    pub fn keeps_covariances(&self) -> bool {
-        !matches!(self, Self::FixedGain { .. })
+    /// What it computes, of what not every kind does.
+    pub fn scope(&self) -> Scope {
+        Scope {
+            covariances: !matches!(self, Self::FixedGain { .. }),
+            conversions: matches!(self, Self::Converted { .. }),
+        }
     }
 }
 
@@ -201,7 +213,7 @@ fn if_there_at_all<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<
     Rows::deserialize(deserializer).map(Some)
 }
 
-/// The choices that the papers leave open; every key is always there.
+/// The choices that the papers leave open. The first four keys are always there; the others are where they make a difference.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Conventions {
@@ -213,16 +225,24 @@ pub struct Conventions {
     pub first_step: String,
     /// `full`.
     pub log_likelihood: String,
+    /// `embedded`; where a mode sets an entry of the state to zero that another has.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unequal_dimensions: Option<String>,
+    /// `at-measurement`; where measurements are converted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub converted_covariance: Option<String>,
 }
 
 impl Conventions {
     /// Whether a convention has this value here.
     pub fn has(&self, key: &str, value: &str) -> bool {
-        let own = match key {
+        let own: &str = match key {
             "square_root" => &self.square_root,
             "angle_mean" => &self.angle_mean,
             "first_step" => &self.first_step,
             "log_likelihood" => &self.log_likelihood,
+            "unequal_dimensions" => self.unequal_dimensions.as_deref().unwrap_or("embedded"),
+            "converted_covariance" => self.converted_covariance.as_deref().unwrap_or("at-measurement"),
             _ => return false,
         };
         own == value
@@ -236,6 +256,8 @@ impl Default for Conventions {
             angle_mean: "centre-point".into(),
             first_step: "mixed".into(),
             log_likelihood: "full".into(),
+            unequal_dimensions: None,
+            converted_covariance: None,
         }
     }
 }
@@ -289,212 +311,22 @@ impl ProblemFile {
         }
     }
 
-    /// Checks all that the filter relies on.
-    ///
-    /// # Errors
-    ///
-    /// [`Invalid`] with the place inside the file.
-    pub fn check(&self) -> Result<(), Invalid> {
-        if self.format != FORMAT {
-            let reason = format!("is {:?}, but this program reads {FORMAT:?}", self.format);
-            return Err(Invalid::new(Class::Format, "problem.format", reason));
-        }
-        self.check_conventions()?;
-        self.check_shapes()?;
-        self.check_filter()?;
-        self.check_measurements()?;
-        shape::dispatch(self.state.len(), self.noise.len(), TypedCheck(self))?
-    }
-
-    fn check_conventions(&self) -> Result<(), Invalid> {
-        let given = &self.conventions;
-        let pairs = [
-            ("square_root", &given.square_root),
-            ("angle_mean", &given.angle_mean),
-            ("first_step", &given.first_step),
-            ("log_likelihood", &given.log_likelihood),
-        ];
-        for (key, value) in pairs {
-            if !Conventions::default().has(key, value) {
-                let reason = format!("is {value:?}, which no problem of this format has");
-                return Err(Invalid::new(
-                    Class::Unknown,
-                    format!("problem.conventions.{key}"),
-                    reason,
-                ));
-            }
-        }
-        Ok(())
-    }
-
-    fn check_shapes(&self) -> Result<(), Invalid> {
-        let Dimensions { n, m, r, .. } = self.dimensions();
-        check_length("problem.units", self.units.len(), n)?;
-        check_matrix("problem.R", &self.noise, m, m)?;
-        if r == 0 {
-            return Err(Invalid::new(
-                Class::Shape,
-                "problem.modes",
-                "is empty; the filter needs at least one",
-            ));
-        }
-        for (j, mode) in self.modes.iter().enumerate() {
-            check_matrix(&format!("problem.modes[{j}].F"), &mode.transition, n, n)?;
-            check_matrix(&format!("problem.modes[{j}].Q"), &mode.noise, n, n)?;
-        }
-        match &self.measurement {
-            MeasurementFile::Linear { matrix } => check_matrix("problem.measurement.H", matrix, m, n)?,
-            MeasurementFile::RangeBearing { components, .. } => {
-                check_length("problem.measurement.components", components.len(), m)?;
-            }
-        }
-        check_matrix("problem.transition", &self.transition, r, r)?;
-        check_length("problem.initial.modes", self.initial.modes.len(), r)?;
-        check_length(
-            "problem.initial.mode_probabilities",
-            self.initial.mode_probabilities.len(),
-            r,
-        )?;
-        for (j, estimate) in self.initial.modes.iter().enumerate() {
-            check_length(&format!("problem.initial.modes[{j}].mean"), estimate.mean.len(), n)?;
-            let field = format!("problem.initial.modes[{j}].covariance");
-            match &estimate.covariance {
-                Some(rows) if self.filter.keeps_covariances() => check_matrix(&field, rows, n, n)?,
-                Some(_) => {
-                    let reason = "is given, but filters with fixed gains have no covariance";
-                    return Err(Invalid::new(Class::Format, field, reason));
-                }
-                None if self.filter.keeps_covariances() => {
-                    return Err(Invalid::new(Class::Format, field, "is missing"));
-                }
-                None => {}
-            }
-        }
-        Ok(())
-    }
-
-    fn check_filter(&self) -> Result<(), Invalid> {
-        match &self.filter {
-            FilterFile::Cubature { rule } if !RULES.contains(&rule.as_str()) => {
-                let reason = format!("is {rule:?}; known are {}", RULES.join(", "));
-                Err(Invalid::new(Class::Unknown, "problem.filter.rule", reason))
-            }
-            FilterFile::Kalman {} | FilterFile::FixedGain { .. }
-                if !matches!(self.measurement, MeasurementFile::Linear { .. }) =>
-            {
-                let name = self.filter.name();
-                let reason = format!("is {name}, which has no range and bearing; use a filter with points");
-                Err(Invalid::new(Class::Unknown, "problem.filter.kind", reason))
-            }
-            FilterFile::FixedGain { mixing, modes } => self.check_fixed_gains(mixing, modes),
-            FilterFile::Kalman {} | FilterFile::Cubature { .. } | FilterFile::Unscented { .. } => Ok(()),
-        }
-    }
-
-    fn check_fixed_gains(&self, mixing: &str, modes: &[FixedGainFile]) -> Result<(), Invalid> {
-        let Dimensions { n, m, r, .. } = self.dimensions();
-        if !MIXINGS.contains(&mixing) {
-            let reason = format!("is {mixing:?}; known are {}", MIXINGS.join(", "));
-            return Err(Invalid::new(Class::Unknown, "problem.filter.mixing", reason));
-        }
-        check_length("problem.filter.modes", modes.len(), r)?;
-        for (j, mode) in modes.iter().enumerate() {
-            check_matrix(&format!("problem.filter.modes[{j}].gain"), &mode.gain, n, m)?;
-            let field = format!("problem.filter.modes[{j}].innovation_covariance");
-            check_matrix(&field, &mode.innovation_covariance, m, m)?;
-        }
-        Ok(())
-    }
-
-    fn check_measurements(&self) -> Result<(), Invalid> {
-        let m = self.noise.len();
-        for (place, entry) in self.measurements.iter().enumerate() {
-            if entry.step != place + 1 {
-                let field = format!("problem.measurements[{place}].step");
-                let reason = format!(
-                    "is {}, but steps count 1, 2, 3 without a gap: {}",
-                    entry.step,
-                    place + 1
-                );
-                return Err(Invalid::new(Class::Shape, field, reason));
-            }
-            let Some(z) = &entry.z else { continue };
-            let field = format!("problem.measurements[{place}].z");
-            check_length(&field, z.len(), m)?;
-            for (row, value) in z.iter().enumerate() {
-                if !value.is_finite() {
-                    return Err(Invalid::new(
-                        Class::NotFinite,
-                        format!("{field}[{row}]"),
-                        "is not finite",
-                    ));
-                }
-                if self.is_bearing(row) && value.abs() > 2.0 * std::f64::consts::PI {
-                    let reason = format!("is {value}, a bearing outside ±2π: is it in degrees?");
-                    return Err(Invalid::new(Class::Angle, format!("{field}[{row}]"), reason));
-                }
-            }
-        }
-        Ok(())
-    }
-
     /// Whether an entry of the measurement is an angle.
     pub fn is_bearing(&self, row: usize) -> bool {
+        self.is_component(row, "bearing")
+    }
+
+    /// Whether an entry of the measurement is a distance.
+    pub fn is_range(&self, row: usize) -> bool {
+        self.is_component(row, "range")
+    }
+
+    fn is_component(&self, row: usize, name: &str) -> bool {
         match &self.measurement {
             MeasurementFile::Linear { .. } => false,
             MeasurementFile::RangeBearing { components, .. } => {
-                components.get(row).is_some_and(|component| component == "bearing")
+                components.get(row).is_some_and(|component| component == name)
             }
         }
     }
-}
-
-/// Puts a problem into doubles and lets the cycle check it.
-struct TypedCheck<'a>(&'a ProblemFile);
-
-impl shape::Work for TypedCheck<'_> {
-    type Output = Result<(), Invalid>;
-
-    fn run<const N: usize, const M: usize>(self) -> Self::Output {
-        let setup = self.0.setup_in_doubles::<N, M>()?;
-        setup.problem.check(&setup.initial).map_err(|error| of_problem(&error))
-    }
-}
-
-/// The class and the place of what the cycle refuses.
-fn of_problem(error: &InvalidProblem) -> Invalid {
-    let class = match error {
-        InvalidProblem::Length { .. }
-        | InvalidProblem::NoModes
-        | InvalidProblem::RuleLengths { .. }
-        | InvalidProblem::Position { .. } => Class::Shape,
-        InvalidProblem::NotFinite { .. } => Class::NotFinite,
-        InvalidProblem::NegativeProbability { .. } | InvalidProblem::NotNormalised { .. } => Class::NotAProbability,
-        InvalidProblem::NotSymmetric { .. } => Class::NotSymmetric,
-        InvalidProblem::NotPositive { .. } => Class::NotPositiveDefinite,
-        InvalidProblem::NotLinear | InvalidProblem::Rule { .. } | InvalidProblem::FixedGains { .. } => Class::Unknown,
-        InvalidProblem::CovarianceGiven { .. } => Class::Format,
-    };
-    // The sentence starts with the field in backquotes.
-    let sentence = error.to_string();
-    match sentence.strip_prefix('`').and_then(|rest| rest.split_once('`')) {
-        Some((field, rest)) => Invalid::new(class, format!("problem.{field}"), rest.trim_start()),
-        None => Invalid::new(class, "problem", sentence),
-    }
-}
-
-fn check_length(field: &str, found: usize, expected: usize) -> Result<(), Invalid> {
-    if found == expected {
-        return Ok(());
-    }
-    let reason = format!("has {found} entries where {expected} are needed");
-    Err(Invalid::new(Class::Shape, field, reason))
-}
-
-fn check_matrix(field: &str, rows: &Rows, height: usize, width: usize) -> Result<(), Invalid> {
-    check_length(field, rows.len(), height)?;
-    for (place, row) in rows.iter().enumerate() {
-        check_length(&format!("{field}[{place}]"), row.len(), width)?;
-    }
-    Ok(())
 }

@@ -61,7 +61,7 @@ fn own_values<T: Real, const N: usize>(
     triangle: Triangle,
 ) -> Vec<T> {
     let size = match quantity {
-        Quantity::InnovationCovariance => shown.len().isqrt(),
+        Quantity::InnovationCovariance | Quantity::ConvertedCovariance => shown.len().isqrt(),
         _ if quantity.is_covariance() => N,
         _ => 0,
     };

@@ -85,8 +85,9 @@ fn scale(
         | Q::CombinedPredictionCovariance
         | Q::UpdatedCovariance
         | Q::CombinedCovariance => square(quantity, n),
+        Q::ConvertedMeasurement => deviations(Q::ConvertedCovariance, m),
         Q::PredictedMeasurement | Q::Innovation => deviations(Q::InnovationCovariance, m),
-        Q::InnovationCovariance => square(quantity, m),
+        Q::ConvertedCovariance | Q::InnovationCovariance => square(quantity, m),
         Q::CrossCovariance => outer(
             &deviations(Q::PredictedCovariance, n),
             &deviations(Q::InnovationCovariance, m),

@@ -7,6 +7,7 @@ use super::problem::{FilterFile, MeasurementFile, ProblemFile, Rows, UNMIXED};
 use crate::filter::fixed_gain::FixedGain;
 use crate::gaussian::Gaussian;
 use crate::imm::{Equations, Imm, Initial, Problem};
+use crate::model::conversion::UnknownConversion;
 use crate::model::motion::Mode;
 use crate::model::{Measurement, PolarComponent};
 use crate::number::{RandomRounding, Real};
@@ -157,10 +158,23 @@ impl ProblemFile {
                         }
                     };
                 }
-                Ok(Measurement::Polar {
-                    components: named,
-                    position: *position,
-                    sensor: sensor.map(number),
+                let (components, position, sensor) = (named, *position, sensor.map(number));
+                let FilterFile::Converted { conversion } = &self.filter else {
+                    return Ok(Measurement::Polar {
+                        components,
+                        position,
+                        sensor,
+                    });
+                };
+                let unknown = |error: UnknownConversion| {
+                    Invalid::new(Class::Unknown, "problem.filter.conversion", error.to_string())
+                };
+                let conversion = conversion.parse().map_err(unknown)?;
+                Ok(Measurement::Converted {
+                    components,
+                    position,
+                    sensor,
+                    conversion,
                 })
             }
         }
@@ -182,7 +196,7 @@ impl ProblemFile {
 
     fn rule<T: Real, const N: usize>(&self, number: fn(f64) -> T) -> Result<Option<Rule<T, N>>, Invalid> {
         let (field, rule) = match &self.filter {
-            FilterFile::Kalman {} | FilterFile::FixedGain { .. } => return Ok(None),
+            FilterFile::Kalman {} | FilterFile::FixedGain { .. } | FilterFile::Converted { .. } => return Ok(None),
             FilterFile::Cubature { rule } => (
                 "problem.filter.rule",
                 rule.parse::<RuleName>().and_then(|name| name.rule()),

@@ -7,6 +7,8 @@
 
 use super::figure::{NotDrawn, not_drawn};
 use super::{standard_errors, table};
+use crate::paper::result::Reproduction;
+use crate::paper::specification::Specification;
 use crate::paper::sustika2015::sweep::{FILTERS, Fit, Parameter, Point, Setting, Trajectory};
 use crate::paper::sustika2015::{DIVERGENT_FIT_ERROR, GOOD_FIT_ERROR};
 use crate::statistics::Estimate;
@@ -41,6 +43,25 @@ pub fn text(sweep: &[(Setting, Point)], runs: usize) -> String {
          each other differ by more than π. The difference is the mean of IMM-UKF less IMM-CMKF, run by run, in its standard errors."
     );
     text
+}
+
+/// The paper's execution times beside the computed ones, of which only the ratio can be compared; none for a paper without such a table.
+pub fn execution_times(specification: &Specification, reproduction: &Reproduction) -> Option<String> {
+    let table = specification.tables.iter().find(|table| table.number == 6)?;
+    let row = table.rows.iter().find(|row| row.unit == "s")?;
+    let (&[first, second], [converted, unscented]) = (&row.values[..], &reproduction.filters[..]) else {
+        return None;
+    };
+    let here = [converted, unscented].map(|filter| filter.microseconds_per_step);
+    Some(format!(
+        "\nTable 6. {} Published: {first} s and {second} s, the second {:.2} times the first.\n\
+         Here: {:.1} and {:.1} µs a step, {:.2} times.\n",
+        table.caption,
+        second / first,
+        here[0],
+        here[1],
+        here[1] / here[0],
+    ))
 }
 
 fn points_of(sweep: &[(Setting, Point)], trajectory: Trajectory, parameter: Parameter) -> Vec<(f64, Point)> {

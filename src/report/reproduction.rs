@@ -3,7 +3,7 @@
 //! After this file the reader knows what each column of a reproduced table is, and which published figure stands beside which
 //! computed one.
 
-use super::{citation, indent_of, standard_errors, table, wrapped};
+use super::{citation, fit_error, indent_of, standard_errors, table, wrapped};
 use crate::paper::Paper;
 use crate::paper::result::{Consistency, ErrorFigure, Figure, FirstRun, Performance, Quantity, Reproduction};
 use crate::paper::specification::{Choices, Specification, Table};
@@ -114,6 +114,7 @@ pub fn text(paper: Paper, reproduction: &Reproduction) -> String {
             text.push_str(DIFFERENCE_NOTE);
         }
     }
+    text.push_str(&fit_error::execution_times(specification, reproduction).unwrap_or_default());
     if published_and_computed(paper, reproduction).is_empty() {
         let _ = writeln!(text, "\nErrors, of which the paper publishes no figures");
         let _ = writeln!(text, "{}", unpublished(reproduction));

@@ -50,7 +50,7 @@ pub fn lambda<T: Field>(n: &T, alpha: &T, kappa: &T) -> T {
     alpha.clone() * alpha.clone() * (n.clone() + kappa.clone()) - n.clone()
 }
 
-/// The unscented rule.
+/// The unscented rule — sustika2015 (27)-(29), for zero mean and unit covariance.
 ///
 /// ```text
 /// λ = α²(n + κ) − n
@@ -62,6 +62,10 @@ pub fn lambda<T: Field>(n: &T, alpha: &T, kappa: &T) -> T {
 /// λ = κ); Wan and van der Merwe 2001 for α and β. The rule of the filter IMMUKF that both papers compare themselves with.
 ///
 /// With κ = 0 it is the third-degree rule and a centre of weight zero; at n = 3 that is also κ = 3 − n.
+///
+/// With κ = 3 − n the points are at the distance √3 α in every dimension. Components without variance then change nothing: the points
+/// along them fall on the centre and make up for its smaller weight. With another κ, as 0, they push the other points outwards.
+/// sustika2015 prints neither the weights nor λ, and has states of four and of six components.
 ///
 /// # Errors
 ///
@@ -79,7 +83,8 @@ pub fn lambda<T: Field>(n: &T, alpha: &T, kappa: &T) -> T {
 /// ```
 ///
 /// Evidence: `unscented_rule_is_exact_to_degree_three_and_not_four` (exact),
-/// `unscented_rule_has_degree_three_in_every_dimension` (symbolic).
+/// `unscented_rule_has_degree_three_in_every_dimension` (symbolic),
+/// `components_without_variance_change_an_unscented_rule_exactly_when_they_change_its_radius` (exact).
 pub fn unscented(n: usize, parameters: &Parameters) -> Result<ExactRule, InvalidRule> {
     if n == 0 {
         return Err(InvalidRule::Dimension {

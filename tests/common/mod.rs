@@ -6,7 +6,7 @@ use immaculate::filter::fixed_gain::FixedGain;
 use immaculate::gaussian::Gaussian;
 use immaculate::imm::{Equations, Failure, Imm, Initial, InvalidProblem, Problem, Step};
 use immaculate::model::motion::{Mode, constant_velocity, coordinated_turn, integrated_noise};
-use immaculate::model::{Measurement, PolarComponent};
+use immaculate::model::{Conversion, Measurement, PolarComponent};
 use immaculate::rule::RuleName;
 use nalgebra::{Matrix4, SMatrix, SVector, Vector2, Vector4, matrix, vector};
 use rand_chacha::ChaCha8Rng;
@@ -103,6 +103,20 @@ pub fn polar_scene_seen_from(sensor: [f64; 2], rule: &str) -> Scene {
             vector![x.hypot(y) + 40.0 * noise[0], y.atan2(x) + 0.007 * noise[1]]
         }),
     }
+}
+
+/// The same converted to positions.
+pub fn converted_scene(conversion: Conversion, sensor: [f64; 2]) -> Scene {
+    let mut scene = polar_scene_seen_from(sensor, "simplex-5");
+    scene.problem.rule = None;
+    scene.problem.measurement = Measurement::Converted {
+        components: [PolarComponent::Range, PolarComponent::Bearing],
+        position: [0, 2],
+        sensor,
+        conversion,
+    };
+    scene.equations = Equations::converted();
+    scene
 }
 
 /// The linear scene for cubature filters with the named rule.

@@ -61,11 +61,13 @@ fn inputs(scenario: &Scenario, draw: &Draw, mean: &[f64]) -> Draft {
             Measurement::Linear(h) => MeasurementFile::Linear {
                 matrix: rounded_rows(h),
             },
-            Measurement::Polar { position, sensor, .. } => MeasurementFile::RangeBearing {
-                components: words(&["range", "bearing"]),
-                position: *position,
-                sensor: *sensor,
-            },
+            Measurement::Polar { position, sensor, .. } | Measurement::Converted { position, sensor, .. } => {
+                MeasurementFile::RangeBearing {
+                    components: words(&["range", "bearing"]),
+                    position: *position,
+                    sensor: *sensor,
+                }
+            }
         };
     })
 }

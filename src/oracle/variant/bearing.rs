@@ -4,11 +4,10 @@
 
 use super::super::setup::Setup;
 use super::{draws_points, weights};
-use crate::filter::cubature;
 use crate::imm::{Problem, Step};
 use crate::model::{Measurement, PolarComponent};
 use crate::number::Real;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SVector;
 
 /// Applies a variant of range and bearing; whether it is one.
 pub(super) fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
@@ -61,7 +60,9 @@ const FUNCTIONS: [&str; 5] = [
 fn of_place<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
     let mut nowhere = ([0; 2], [T::zero(), T::zero()]);
     let (position, sensor) = match &mut setup.problem.measurement {
-        Measurement::Polar { position, sensor, .. } => (position, sensor),
+        Measurement::Polar { position, sensor, .. } | Measurement::Converted { position, sensor, .. } => {
+            (position, sensor)
+        }
         Measurement::Linear(_) => (&mut nowhere.0, &mut nowhere.1),
     };
     match id {
@@ -84,34 +85,15 @@ fn of_wrapping<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Se
         "bearings-never-wrapped" => (true, true, true),
         _ => return false,
     };
-    // ẑ = Σₛ wₛ Zₛ
     if mean && points {
-        equations.predicted_measurement =
-            |problem, _, now, j| cubature::weighted_mean(weights(problem).0, &now.measured_points[j]);
+        *equations = equations.clone().with_plain_mean();
     }
-    // Zₛ − ẑ as a number
     if deviations && points {
-        equations.innovation_covariance = |problem, _, now, j| {
-            let (values, mean) = (&now.measured_points[j], &now.predicted_measurements[j]);
-            cubature::weighted_covariance(weights(problem).1, values, mean, &problem.measurement_noise)
-        };
-        equations.cross_covariance = |problem, _, now, j| {
-            cubature::cross_covariance(
-                &Measurement::Linear(SMatrix::zeros()), // which has no angles
-                weights(problem).1,
-                &now.predicted_points[j],
-                &now.predicted[j].mean,
-                &now.measured_points[j],
-                &now.predicted_measurements[j],
-            )
-        };
+        *equations = equations.clone().with_plain_deviations();
     }
-    // z − ẑ as a number
-    if innovation {
-        equations.innovation = |_, _, now, j| match &now.measurement {
-            Some(z) => z - &now.predicted_measurements[j],
-            None => SVector::from_fn(|_, _| T::undecided()),
-        };
+    // A converted measurement has no bearing any more.
+    if innovation && !setup.problem.measurement.is_converted() {
+        *equations = equations.clone().with_plain_innovation();
     }
     true
 }

@@ -12,6 +12,30 @@ use nalgebra::SVector;
 
 /// Applies a convention; whether it is one.
 pub(super) fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+    of_any_filter(id, setup) || of_sustika2015(id, setup)
+}
+
+/// What sustika2015 leaves open: modes of unequal dimensions, and where R^c is evaluated.
+fn of_sustika2015<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+    let equations = &mut setup.equations;
+    match id {
+        // P = Σᵢ wᵢ Eᵢ [ Pⁱ + (x̂ⁱ − x̂)(x̂ⁱ − x̂)ᵀ ] Eᵢ
+        "unequal-dimensions-index-wise" => *equations = equations.clone().with_index_wise_mixing(),
+        // x̂ⁱ with the entries that mode i lacks taken from mode j
+        "unequal-dimensions-unbiased" => *equations = equations.clone().with_unbiased_mixing(),
+        // R^c at the range and bearing of the combined prediction
+        "converted-covariance-at-prediction" => {
+            if equations.converts {
+                equations.converted_covariance = Equations::converted_at_prediction().converted_covariance;
+            }
+        }
+        _ => return false,
+    }
+    true
+}
+
+/// The square root, angles, the first step and the constant of the likelihood.
+fn of_any_filter<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
     let points = draws_points(setup);
     let equations = &mut setup.equations;
     match id {

@@ -3,7 +3,7 @@
 //! After this file the reader knows how else a right filter may be written; what differs is rounding alone.
 
 use super::super::setup::Setup;
-use super::{draws_points, is_linear, sum_of_covariance_weights, weights};
+use super::{draws_points, is_linear, noise, sum_of_covariance_weights, weights};
 use crate::filter::{cubature, kalman};
 use crate::gaussian::{Gaussian, mixture_covariance, mixture_mean};
 use crate::imm::Equations;
@@ -28,10 +28,10 @@ fn of_mean<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<
         return false;
     }
     // x̂ = P (P⁻⁻¹ x̂⁻ + Hᵀ R⁻¹ z), P = (P⁻⁻¹ + Hᵀ R⁻¹ H)⁻¹
-    if !draws_points(setup) {
+    if has_information(setup) {
         setup.equations.updated_mean = |problem, _, now, j| {
             let h = problem.measurement.matrix();
-            let of_measurement = h.transpose() * inverse(&problem.measurement_noise);
+            let of_measurement = h.transpose() * inverse(noise(problem, now));
             let before = inverse(&now.predicted[j].covariance);
             let mean = &now.predicted[j].mean;
             let measurement = &now.innovations[j] + &h * mean;
@@ -43,7 +43,7 @@ fn of_mean<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<
 
 /// The updated covariance.
 fn of_update<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
-    let points = draws_points(setup);
+    let (points, has_information) = (draws_points(setup), has_information(setup));
     let entry = &mut setup.equations.updated_covariance;
     match id {
         // (I − W H) P⁻ (I − W H)ᵀ + W R Wᵀ; with points P⁻ − W Cᵀ − C Wᵀ + W S Wᵀ
@@ -57,7 +57,7 @@ fn of_update<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setu
             *entry = |problem, _, now, j| {
                 let w = &now.gains[j];
                 let rest = rest(problem, now, j);
-                let noise = w * &problem.measurement_noise * w.transpose();
+                let noise = w * noise(problem, now) * w.transpose();
                 &rest * &now.predicted[j].covariance * rest.transpose() + noise
             }
         }
@@ -73,10 +73,10 @@ fn of_update<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setu
         }
         // (P⁻⁻¹ + Hᵀ R⁻¹ H)⁻¹
         "information-update" => {
-            if !points {
+            if has_information {
                 *entry = |problem, _, now, j| {
                     let h = problem.measurement.matrix();
-                    let information = h.transpose() * solve(&ldl(&problem.measurement_noise), &h);
+                    let information = h.transpose() * solve(&ldl(noise(problem, now)), &h);
                     inverse(&(inverse(&now.predicted[j].covariance) + information))
                 }
             }
@@ -92,6 +92,12 @@ fn of_update<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setu
         _ => return false,
     }
     true
+}
+
+/// Whether there is an information form: no points, and no entry of the state that a mode knows exactly, whose covariance has no inverse.
+fn has_information<T: Real, const N: usize, const M: usize>(setup: &Setup<T, N, M>) -> bool {
+    let modes = &setup.problem.modes;
+    !draws_points(setup) && !modes.iter().any(|mode| (0..N).any(|entry| mode.lacks(entry)))
 }
 
 /// The gain and the likelihood, by an inverse or another factor.

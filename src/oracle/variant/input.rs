@@ -4,7 +4,8 @@
 
 use super::super::setup::Setup;
 use super::{diagonal, number};
-use crate::model::Measurement;
+use crate::imm::Problem;
+use crate::model::{Measurement, PolarComponent};
 use crate::number::Real;
 use nalgebra::SMatrix;
 
@@ -49,7 +50,7 @@ fn of_matrices<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Se
         }
         // the bearing's σ read as degrees
         "bearing-noise-in-degrees" => {
-            let is_angle: Vec<bool> = (0..M).map(|row| problem.measurement.is_angle(row)).collect();
+            let is_angle: Vec<bool> = (0..M).map(|row| is_bearing(problem, row)).collect();
             let unit = |row: usize| if is_angle[row] { degree() } else { T::one() };
             let noise = &problem.measurement_noise;
             problem.measurement_noise =
@@ -136,7 +137,7 @@ fn of_measurements<T: Real, const N: usize, const M: usize>(id: &str, setup: &mu
         // θ π / 180 of a bearing that is in radians already
         "degrees-for-radians" => {
             for z in measurements.iter_mut().flatten() {
-                for row in (0..M).filter(|&row| setup.problem.measurement.is_angle(row)) {
+                for row in (0..M).filter(|&row| is_bearing(&setup.problem, row)) {
                     z[row] *= degree();
                 }
             }
@@ -144,6 +145,11 @@ fn of_measurements<T: Real, const N: usize, const M: usize>(id: &str, setup: &mu
         _ => return false,
     }
     true
+}
+
+/// Whether a component of the measurement is a bearing.
+fn is_bearing<T: Real, const N: usize, const M: usize>(problem: &Problem<T, N, M>, row: usize) -> bool {
+    problem.measurement.reports(row) == Some(PolarComponent::Bearing)
 }
 
 /// A degree in radians.

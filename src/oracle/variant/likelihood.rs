@@ -3,7 +3,7 @@
 //! After this file the reader knows how the Gaussian density of a residual is miscalculated, and of which residual.
 
 use super::super::setup::Setup;
-use super::{diagonal, draws_points, number};
+use super::{diagonal, draws_points, noise, number, used};
 use crate::filter::kalman;
 use crate::gaussian::log_density;
 use crate::imm::printed::{log_density_21, log_density_57};
@@ -69,7 +69,7 @@ fn of_updated_arguments<T: Real, const N: usize, const M: usize>(id: &str, setup
             if !points {
                 *entry = |problem, _, now, j| {
                     let (h, covariance) = (problem.measurement.matrix(), &now.updated[j].covariance);
-                    let s = kalman::innovation_covariance(&h, covariance, &problem.measurement_noise);
+                    let s = kalman::innovation_covariance(&h, covariance, noise(problem, now));
                     log_density(&now.innovations[j], &ldl(&s))
                 }
             }
@@ -79,7 +79,7 @@ fn of_updated_arguments<T: Real, const N: usize, const M: usize>(id: &str, setup
             if !points {
                 *entry = |problem, _, now, j| {
                     let (h, covariance) = (problem.measurement.matrix(), &now.updated[j].covariance);
-                    let s = kalman::innovation_covariance(&h, covariance, &problem.measurement_noise);
+                    let s = kalman::innovation_covariance(&h, covariance, noise(problem, now));
                     log_density(&updated_residual(problem, now, j), &ldl(&s))
                 }
             }
@@ -95,7 +95,7 @@ fn of_other_arguments<T: Real, const N: usize, const M: usize>(id: &str, setup: 
     match id {
         // S = R
         "likelihood-of-measurement-noise" => {
-            *entry = |problem, _, now, j| log_density(&now.innovations[j], &ldl(&problem.measurement_noise));
+            *entry = |problem, _, now, j| log_density(&now.innovations[j], &ldl(noise(problem, now)));
         }
         // S without its covariances
         "likelihood-of-variances-alone" => {
@@ -141,7 +141,7 @@ fn updated_residual<T: Real, const N: usize, const M: usize>(
     j: usize,
 ) -> SVector<T, M> {
     let undecided = || SVector::from_fn(|_, _| T::undecided());
-    let z = now.measurement.clone().unwrap_or_else(undecided);
+    let z = used(problem, now).cloned().unwrap_or_else(undecided);
     problem
         .measurement
         .difference(&z, &problem.measurement.of(&now.updated[j].mean))

@@ -3,7 +3,7 @@
 //! After this file the reader knows how R is lost or counted twice, and which points and means are taken for others.
 
 use super::super::setup::Setup;
-use super::{draws_points, sum_of_covariance_weights, weights};
+use super::{draws_points, noise, sum_of_covariance_weights, used, weights};
 use crate::filter::{cubature, kalman};
 use crate::imm::{Equations, Problem, Step};
 use crate::number::Real;
@@ -33,7 +33,7 @@ fn of_predicted_measurement<T: Real, const N: usize, const M: usize>(id: &str, s
         }
         // ν = ẑ − z
         "innovation-reversed" => {
-            equations.innovation = |problem, _, now, j| match &now.measurement {
+            equations.innovation = |problem, _, now, j| match used(problem, now) {
                 Some(z) => problem.measurement.difference(&now.predicted_measurements[j], z),
                 None => SVector::from_fn(|_, _| T::undecided()),
             }
@@ -54,7 +54,7 @@ fn of_innovation_covariance<T: Real, const N: usize, const M: usize>(id: &str, s
         }
         "measurement-noise-doubled" => {
             equations.innovation_covariance = |problem, previous, now, j| {
-                let noise = &problem.measurement_noise + &problem.measurement_noise;
+                let noise = noise(problem, now) + noise(problem, now);
                 with_noise(problem, previous, now, j, noise)
             }
         }
@@ -62,7 +62,7 @@ fn of_innovation_covariance<T: Real, const N: usize, const M: usize>(id: &str, s
         "measurement-noise-inside-the-sum" => {
             if points {
                 equations.innovation_covariance = |problem, previous, now, j| {
-                    let noise = &problem.measurement_noise * sum_of_covariance_weights(problem);
+                    let noise = noise(problem, now) * sum_of_covariance_weights(problem);
                     with_noise(problem, previous, now, j, noise)
                 }
             }
@@ -71,8 +71,8 @@ fn of_innovation_covariance<T: Real, const N: usize, const M: usize>(id: &str, s
         "measured-before-the-prediction" => {
             if !points {
                 equations.innovation_covariance = |problem, _, now, j| {
-                    let (h, noise) = (problem.measurement.matrix(), &problem.measurement_noise);
-                    kalman::innovation_covariance(&h, &now.mixed[j].covariance, noise)
+                    let h = problem.measurement.matrix();
+                    kalman::innovation_covariance(&h, &now.mixed[j].covariance, noise(problem, now))
                 };
                 equations.cross_covariance = |problem, _, now, j| {
                     kalman::cross_covariance(&now.mixed[j].covariance, &problem.measurement.matrix())
@@ -125,9 +125,17 @@ fn with_noise<T: Real, const N: usize, const M: usize>(
     j: usize,
     noise: SMatrix<T, M, M>,
 ) -> SMatrix<T, M, M> {
+    let equations = Equations::standard(problem);
+    if equations.converts {
+        let other = Step {
+            converted_covariance: noise,
+            ..now.clone()
+        };
+        return (equations.innovation_covariance)(problem, previous, &other, j);
+    }
     let other = Problem {
         measurement_noise: noise,
         ..problem.clone()
     };
-    (Equations::standard(problem).innovation_covariance)(&other, previous, now, j)
+    (equations.innovation_covariance)(&other, previous, now, j)
 }

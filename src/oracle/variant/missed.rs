@@ -117,6 +117,10 @@ fn detected<T: Real, const N: usize, const M: usize>(
             now.measured_points[j][s] = (e.measured_point)(problem, previous, &now, j, s);
         }
     }
+    if e.converts {
+        // R^c where the prediction is: there is nothing else.
+        now.converted_covariance = (Equations::converted_at_prediction().converted_covariance)(problem, previous, &now);
+    }
     now.predicted_measurements[j] = (e.predicted_measurement)(problem, previous, &now, j);
     now.innovation_covariances[j] = (e.innovation_covariance)(problem, previous, &now, j);
     now.cross_covariances[j] = (e.cross_covariance)(problem, previous, &now, j);

@@ -12,6 +12,7 @@
 //! | `points`        | the points and weights of a rule                                     |
 //! | `measurement`   | predicted measurement, innovation and their covariances              |
 //! | `bearing`       | the measurement function of range and bearing, and its angles        |
+//! | `conversion`    | the converted measurement and its covariance                         |
 //! | `update`        | gain and updated estimates                                           |
 //! | `missed`        | what is done without a detection                                     |
 //! | `likelihood`    | log-likelihood                                                       |
@@ -28,6 +29,7 @@
 mod bearing;
 mod combination;
 mod convention;
+mod conversion;
 mod fixed_gain;
 mod form;
 mod input;
@@ -42,10 +44,10 @@ mod square_root;
 mod update;
 
 use super::setup::Setup;
-use crate::imm::{Problem, Quantity, Step};
-use crate::model::Measurement;
+use crate::imm::{Problem, Quantity, Scope, Step};
+use crate::model::{Measurement, PolarComponent};
 use crate::number::Real;
-use nalgebra::SMatrix;
+use nalgebra::{SMatrix, SVector};
 use serde::de::{Deserializer, Error};
 use serde::{Deserialize, Serialize};
 use std::sync::LazyLock;
@@ -81,6 +83,8 @@ pub enum Applies {
     All,
     /// In filters with points.
     Points,
+    /// In filters that convert range and bearing to a position.
+    Conversions,
     /// In Kalman filters.
     Kalman,
     /// In filters that carry covariances.
@@ -91,8 +95,13 @@ pub enum Applies {
     /// Where a motion sets an entry of the state to zero.
     #[serde(rename = "embedded motion")]
     EmbeddedMotion,
-    /// Where a bearing is measured.
+    /// Where a mode lacks an entry of the state that another has.
+    #[serde(rename = "unequal dimensions")]
+    UnequalDimensions,
+    /// Where residuals of bearings are formed.
     Angles,
+    /// Where a bearing is measured, converted or not.
+    Bearings,
     /// Where a detection is missing.
     Missed,
     /// Where there are several modes.
@@ -107,6 +116,7 @@ impl Applies {
         match self {
             Self::All => true,
             Self::Points => problem.rule.is_some(),
+            Self::Conversions => problem.measurement.is_converted(),
             Self::Kalman => problem.rule.is_none() && problem.fixed_gains.is_none(),
             Self::Covariances => problem.fixed_gains.is_none(),
             Self::FixedGains => problem.fixed_gains.is_some(),
@@ -114,7 +124,12 @@ impl Applies {
                 .modes
                 .iter()
                 .any(|mode| zero_rows(&mode.transition).next().is_some()),
+            Self::UnequalDimensions => {
+                let lacks = |entry: usize| problem.modes.iter().filter(move |mode| mode.lacks(entry)).count();
+                (0..N).any(|entry| (1..problem.modes.len()).contains(&lacks(entry)))
+            }
             Self::Angles => (0..M).any(|row| problem.measurement.is_angle(row)),
+            Self::Bearings => (0..M).any(|row| problem.measurement.reports(row) == Some(PolarComponent::Bearing)),
             Self::Missed => setup.measurements.iter().any(Option::is_none),
             Self::SeveralModes => problem.modes.len() > 1,
         }
@@ -132,6 +147,9 @@ pub struct Variant {
     /// The quantity in whose equation it is made, the first that it can change.
     #[serde(deserialize_with = "quantity")]
     pub quantity: Quantity,
+    /// The same where measurements are converted, if it is another there.
+    #[serde(default, deserialize_with = "quantity_if_any")]
+    pub converted: Option<Quantity>,
     /// Where it can make a difference.
     pub applies: Applies,
     /// What was done, said to the one who did it.
@@ -149,6 +167,16 @@ pub struct Variant {
 }
 
 impl Variant {
+    /// In whose equation it is made, in filters of a kind.
+    pub fn quantity_in(&self, scope: Scope) -> Quantity {
+        self.converted.filter(|_| scope.conversions).unwrap_or(self.quantity)
+    }
+
+    /// Whether it is made in the equation of a quantity, in filters of any kind.
+    pub fn is_made_in(&self, quantity: Quantity) -> bool {
+        self.quantity == quantity || self.converted == Some(quantity)
+    }
+
     /// Whether it can make a difference here. Where it cannot, the variant leaves every value as it is.
     pub fn applies_to<T: Real, const N: usize, const M: usize>(&self, setup: &Setup<T, N, M>) -> bool {
         let exists = setup.equations.keeps_covariances || !self.needs_covariances();
@@ -166,6 +194,10 @@ fn quantity<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Quantity, D::E
     let name = String::deserialize(deserializer)?;
     let named = Quantity::ALL.into_iter().find(|quantity| quantity.name() == name);
     named.ok_or_else(|| D::Error::custom(format!("there is no quantity {name:?}")))
+}
+
+fn quantity_if_any<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Quantity>, D::Error> {
+    quantity(deserializer).map(Some)
 }
 
 #[derive(Deserialize)]
@@ -208,6 +240,7 @@ pub fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setu
         || points::apply(id, setup)
         || measurement::apply(id, setup)
         || bearing::apply(id, setup)
+        || conversion::apply(id, setup)
         || update::apply(id, setup)
         || missed::apply(id, setup)
         || likelihood::apply(id, setup)
@@ -227,6 +260,31 @@ fn draws_points<T, const N: usize, const M: usize>(setup: &Setup<T, N, M>) -> bo
 /// acceleration.
 fn zero_rows<T: Real, const N: usize>(motion: &SMatrix<T, N, N>) -> impl Iterator<Item = usize> + use<'_, T, N> {
     (0..N).filter(|&row| motion.row(row).iter().all(T::is_zero))
+}
+
+/// The covariance of the noise of what the filter uses: R, or that of the converted measurement.
+fn noise<'a, T: Real, const N: usize, const M: usize>(
+    problem: &'a Problem<T, N, M>,
+    now: &'a Step<T, N, M>,
+) -> &'a SMatrix<T, M, M> {
+    if problem.measurement.is_converted() {
+        &now.converted_covariance
+    } else {
+        &problem.measurement_noise
+    }
+}
+
+/// What the filter uses of a measurement z: z itself, or the converted measurement.
+fn used<'a, T: Real, const N: usize, const M: usize>(
+    problem: &Problem<T, N, M>,
+    now: &'a Step<T, N, M>,
+) -> Option<&'a SVector<T, M>> {
+    let z = now.measurement.as_ref()?;
+    Some(if problem.measurement.is_converted() {
+        &now.converted_measurement
+    } else {
+        z
+    })
 }
 
 /// Whether the measurement is a matrix times the state.

@@ -3,7 +3,7 @@
 //! After this file the reader knows the mistakes that can be made in C S⁻¹, x̂⁻ + W ν and P⁻ − W S Wᵀ.
 
 use super::super::setup::Setup;
-use super::{diagonal, draws_points};
+use super::{diagonal, draws_points, noise};
 use crate::filter::{kalman, update};
 use crate::imm::equations::Factored;
 use crate::imm::{Problem, Step};
@@ -40,7 +40,7 @@ fn of_gain<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<
         // C (S − R)⁻¹
         "gain-without-measurement-noise" => {
             *entry = |problem, _, now, j| {
-                let s = &now.innovation_covariances[j] - &problem.measurement_noise;
+                let s = &now.innovation_covariances[j] - noise(problem, now);
                 gain(&now.cross_covariances[j], &s)
             }
         }
@@ -135,8 +135,7 @@ fn of_covariance<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut 
         // P⁻ − W R Wᵀ
         "covariance-update-by-noise" => {
             *entry = |problem, _, now, j| {
-                let noise = &problem.measurement_noise;
-                update::updated_covariance(&now.predicted[j].covariance, &now.gains[j], noise)
+                update::updated_covariance(&now.predicted[j].covariance, &now.gains[j], noise(problem, now))
             }
         }
         // (I − W H) P⁻ (I − W H)ᵀ, which is P⁻ − W Cᵀ − C Wᵀ + W (S − R) Wᵀ
@@ -156,7 +155,7 @@ fn joseph<T: Real, const N: usize, const M: usize>(
     times: &T,
 ) -> SMatrix<T, N, N> {
     let (w, c) = (&now.gains[j], &now.cross_covariances[j]);
-    let noise = &problem.measurement_noise * (times.clone() - T::one());
+    let noise = noise(problem, now) * (times.clone() - T::one());
     let s = &now.innovation_covariances[j] + noise;
     mirrored(&now.predicted[j].covariance - w * c.transpose() - c * w.transpose() + w * s * w.transpose())
 }
@@ -169,7 +168,7 @@ fn gain_of_mixed<T: Real, const N: usize, const M: usize>(
     j: usize,
 ) -> Factored<T, N, M> {
     let (h, covariance) = (problem.measurement.matrix(), &now.mixed[j].covariance);
-    let s = kalman::innovation_covariance(&h, covariance, &problem.measurement_noise);
+    let s = kalman::innovation_covariance(&h, covariance, noise(problem, now));
     gain(&kalman::cross_covariance(covariance, &h), &s)
 }
 

@@ -29,9 +29,9 @@ pub mod stability;
 
 use super::result::Quantity;
 use super::specification::{Choices, InvalidChoice, derbez2000 as specification};
+use crate::model::Conversion;
 use contestants::{Noise, Reading, Setup};
 use path::{Line, Manoeuvres, Path};
-use radar::Debiasing;
 use scenario::Scenario;
 
 /// t of scenario 1, s: "one rotation every 2 seconds".
@@ -102,22 +102,22 @@ pub fn scenario(choices: &Choices) -> Result<Scenario, InvalidChoice> {
             _ => INITIAL_VARIANCE,
         },
     };
-    let debiasing = match chosen("debiasing")? {
-        "multiplicative" => Debiasing::Multiplicative,
-        "additive" => Debiasing::Additive,
-        _ => Debiasing::Nothing,
+    let conversion = match chosen("debiasing")? {
+        "multiplicative" => Conversion::Multiplicative,
+        "additive" => Conversion::Additive,
+        _ => Conversion::Standard,
     };
-    Ok(assembled(choices.clone(), path, debiasing, &setup))
+    Ok(assembled(choices.clone(), path, conversion, &setup))
 }
 
 /// A scenario on a path with the paper's three filters.
-pub fn assembled(choices: Choices, path: Path, debiasing: Debiasing, setup: &Setup) -> Scenario {
+pub fn assembled(choices: Choices, path: Path, conversion: Conversion, setup: &Setup) -> Scenario {
     Scenario {
         choices,
         runs: RUNS,
         setup: *setup,
         variances: MEASUREMENT_VARIANCES,
-        debiasing,
+        conversion,
         contestants: setup.contestants(&path),
         path,
     }

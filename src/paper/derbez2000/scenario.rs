@@ -6,8 +6,11 @@
 
 use super::contestants::Setup;
 use super::path::{Motion, Path, Place};
-use super::radar::{self, Debiasing};
+use super::radar;
 use crate::imm::{Equations, Failure, Imm, Initial, Problem, Step};
+use crate::model::Conversion;
+use crate::model::conversion::converted_position;
+use crate::number::Real;
 use crate::paper::monte_carlo::{Generator, Run};
 use crate::paper::result::Average;
 use crate::paper::simulation::{self, Filter, Simulation};
@@ -57,8 +60,8 @@ pub struct Scenario {
     pub path: Path,
     /// The variances of range and bearing, m² and rad².
     pub variances: [f64; 2],
-    /// How the bias of the converted measurements is taken out.
-    pub debiasing: Debiasing,
+    /// How range and bearing become positions, and whether their bias is taken out.
+    pub conversion: Conversion,
     /// The filters.
     pub contestants: Vec<Contestant>,
 }
@@ -76,13 +79,12 @@ impl Scenario {
     /// Draws the measurements of one run: for each step the noise of the range, then that of the bearing.
     pub fn draw(&self, generator: &mut Generator) -> Vec<Seen> {
         let deviations = Vector2::from(self.variances.map(f64::sqrt));
-        let factor = self.debiasing.factor(self.variances[1]);
         let see = |place: &Place| {
             let noise = deviations.map(|deviation| deviation * generator.standard_normal());
             let polar = radar::polar(position_of(place)) + noise;
             Seen {
                 polar,
-                position: radar::position(polar) * factor,
+                position: self.conversion.position(&polar[0], &polar[1], &self.variances[1]),
             }
         };
         self.path.places.iter().map(see).collect()
@@ -348,7 +350,7 @@ impl Coordinates {
         if self == Self::Cartesian {
             return Vector4::new(first[0], first[1], second[0], second[1]);
         }
-        let direction = radar::position(Vector2::new(1.0, second[0]));
+        let direction = converted_position(&1.0, &Real::cos(&second[0]), &Real::sin(&second[0]));
         let (r, range_rate, across) = (first[0], first[1], first[0] * second[1]);
         Vector4::new(
             r * direction[0],

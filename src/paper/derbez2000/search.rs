@@ -7,9 +7,9 @@
 use super::arithmetic::published;
 use super::contestants::{Noise, Reading, Setup};
 use super::path::{self, Manoeuvres};
-use super::radar::Debiasing;
 use super::scenario::Scenario;
 use super::{DEGREE, INITIAL_VARIANCE, PHASES, assembled};
+use crate::model::Conversion;
 use crate::number::Real;
 use crate::paper::Effort;
 use crate::paper::monte_carlo::{Generator, Progress, Run};
@@ -239,7 +239,7 @@ impl Configuration {
     /// The scenario of a configuration.
     pub fn scenario(&self) -> Scenario {
         let path = path::manoeuvres(&self.target, PHASES, self.setup.interval);
-        assembled(Choices::default(), path, Debiasing::Nothing, &self.setup)
+        assembled(Choices::default(), path, Conversion::Standard, &self.setup)
     }
 }
 

@@ -117,7 +117,7 @@ impl Setup {
         Contestant {
             name: "IMM-CMKF",
             problem: self.problem(measurement),
-            equations: self.mixed(equations),
+            equations: self.mixed(&equations),
             points: None,
         }
     }
@@ -137,24 +137,27 @@ impl Setup {
         let rule = unscented_in(alpha, beta, kappa).expect("the parameters are part of the program");
         let effective = rule.weights.iter().filter(|weight| **weight != 0.0).count();
         let points = (rule.points.len(), effective);
-        let equations = Equations::cubature();
+        let equations = match bearings {
+            Bearings::Wrapped => Equations::cubature(),
+            Bearings::Plain => Equations::cubature().with_plain_bearings(),
+        };
         Contestant {
-            name: "IMM-UKF",
+            name: match bearings {
+                Bearings::Wrapped => "IMM-UKF",
+                Bearings::Plain => "IMM-UKF, never wrapped",
+            },
             problem: Problem {
                 rule: Some(rule),
                 ..self.problem(measurement)
             },
-            equations: self.mixed(match bearings {
-                Bearings::Wrapped => equations,
-                Bearings::Plain => equations.with_plain_bearings(),
-            }),
+            equations: self.mixed(&equations),
             points: Some(points),
         }
     }
 
-    fn mixed(&self, equations: Equations<f64, 6, 2>) -> Equations<f64, 6, 2> {
+    fn mixed(&self, equations: &Equations<f64, 6, 2>) -> Equations<f64, 6, 2> {
         match self.mixing {
-            Mixing::Embedded => equations,
+            Mixing::Embedded => *equations,
             Mixing::IndexWise => equations.with_index_wise_mixing(),
             Mixing::Unbiased => equations.with_unbiased_mixing(),
         }

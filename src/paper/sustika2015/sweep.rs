@@ -72,9 +72,7 @@ impl Parameter {
         // Both begin with their interval: whole multiples of it. Quotients of integers are the doubles nearest to the decimals.
         let count = (last / interval).round();
         let parts = (1.0 / interval).round();
-        (1..)
-            .map(f64::from)
-            .take_while(|k| *k <= count)
+        std::iter::successors(Some(1.0), |k| Some(k + 1.0).filter(|next| *next <= count))
             .map(|k| k / parts)
             .collect()
     }
@@ -207,7 +205,7 @@ fn median(values: &[f64]) -> f64 {
     match values.len() {
         0 => f64::NAN,
         odd if odd % 2 == 1 => values[middle],
-        _ => (values[middle - 1] + values[middle]) / 2.0,
+        _ => f64::midpoint(values[middle - 1], values[middle]),
     }
 }
 

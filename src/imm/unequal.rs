@@ -1,0 +1,148 @@
+//! Modes of unequal dimensions: what is mixed where a mode has no such entry of the state.
+//!
+//! After this file the reader knows three answers. Constant velocity has no acceleration, constant acceleration has one; embedded in the
+//! larger state, the first knows its acceleration exactly: it is zero ([`Mode::lacks`]).
+//!
+//! | mixing     | the missing entry counts as                   | what that keeps, and what it gives up                       |
+//! |------------|-----------------------------------------------|-------------------------------------------------------------|
+//! | embedded   | zero, without variance                        | both moments, (7) and (8); acceleration is drawn to zero    |
+//! | index-wise | zero in the mean, not there in the covariance | the mean; the spread between none and some is lost          |
+//! | unbiased   | what the mode that is mixed for has           | that mode's acceleration; zero is not believed to be likely |
+//!
+//! The tables of [`Equations`] are *embedded*: it is what the law of total covariance gives for the models as they are stated. The others
+//! are made from such a table by [`Equations::with_index_wise_mixing`] and [`Equations::with_unbiased_mixing`]. Where no mode lacks an
+//! entry all three are the same.
+
+use super::{Equations, Problem, Step};
+use crate::gaussian::{Gaussian, mixture_covariance, mixture_mean};
+use crate::model::motion::Mode;
+use crate::number::{Field, Real};
+use nalgebra::{SMatrix, SVector};
+
+/// The covariance of a mixture, index by index: a component adds to the rows and columns that its mode has.
+///
+/// ```text
+/// P = Σᵢ wᵢ Eᵢ [ Pⁱ + (x̂ⁱ − x̂)(x̂ⁱ − x̂)ᵀ ] Eᵢ,   Eᵢ = diag(1 where mode i has the entry, 0 where it lacks it)
+/// ```
+///
+/// | here         | shape | meaning                           |
+/// |--------------|-------|-----------------------------------|
+/// | `weights`    | R     | wᵢ                                |
+/// | `components` | R     | x̂ⁱ and Pⁱ                          |
+/// | `mean`       | N     | x̂, the mean of the mixture         |
+/// | `modes`      | R     | whose entries are asked for        |
+///
+/// Source: the EKF/UKF toolbox of Hartikainen, Solin and Särkkä, `imm_predict`: lists of indices for each model, and sums over these.
+///
+/// Evidence: `index_wise_mixing_leaves_out_the_spread_of_a_missing_entry` (exact).
+pub fn index_wise_covariance<T: Field, const N: usize>(
+    weights: &[T],
+    components: &[Gaussian<T, N>],
+    mean: &SVector<T, N>,
+    modes: &[Mode<T, N>],
+) -> SMatrix<T, N, N> {
+    let mut covariance = SMatrix::zeros();
+    for ((weight, component), mode) in weights.iter().zip(components).zip(modes) {
+        let deviation = &component.mean - mean;
+        let second_moment = &component.covariance + &deviation * deviation.transpose();
+        covariance += without_missing_entries(second_moment, mode) * weight.clone();
+    }
+    covariance
+}
+
+/// A matrix with zeros in the rows and columns of the entries that a mode lacks.
+fn without_missing_entries<T: Field, const N: usize>(matrix: SMatrix<T, N, N>, mode: &Mode<T, N>) -> SMatrix<T, N, N> {
+    let mut kept = matrix;
+    for entry in (0..N).filter(|&entry| mode.lacks(entry)) {
+        kept.row_mut(entry).fill(T::zero());
+        kept.column_mut(entry).fill(T::zero());
+    }
+    kept
+}
+
+/// The estimate of mode i, with the entries that it lacks taken from mode j.
+///
+/// ```text
+/// x̂ = Eᵢ x̂ⁱ + (I − Eᵢ) x̂ʲ,   P = Eᵢ Pⁱ Eᵢ + (I − Eᵢ) Pʲ (I − Eᵢ)
+/// ```
+///
+/// | here   | meaning                                       |
+/// |--------|-----------------------------------------------|
+/// | `own`  | x̂ⁱ, Pⁱ: where mode i has the entries            |
+/// | `of`   | x̂ʲ, Pʲ: where it lacks them                     |
+/// | `mode` | mode i                                        |
+///
+/// Source: T. Yuan, Y. Bar-Shalom, P. Willett, E. Mozeson, S. Pollak, D. Hardiman, "A Multiple IMM Estimation Approach with Unbiased
+/// Mixing for Thrusting Projectiles", IEEE Transactions on Aerospace and Electronic Systems 48(4), 2012: the missing entries and
+/// their covariance come from the model that has them, uncorrelated with the rest.
+///
+/// Why: if the target accelerates, zero is a biased guess of its acceleration; the guess of the mode that models it is not.
+///
+/// Evidence: `unbiased_mixing_keeps_the_entry_that_one_mode_alone_has` (exact).
+pub fn augmented<T: Field, const N: usize>(
+    own: &Gaussian<T, N>,
+    of: &Gaussian<T, N>,
+    mode: &Mode<T, N>,
+) -> Gaussian<T, N> {
+    let mut estimate = Gaussian {
+        mean: own.mean.clone(),
+        covariance: without_missing_entries(own.covariance.clone(), mode),
+    };
+    let missing: Vec<usize> = (0..N).filter(|&entry| mode.lacks(entry)).collect();
+    for &row in &missing {
+        estimate.mean[row] = of.mean[row].clone();
+        for &column in &missing {
+            estimate.covariance[(row, column)] = of.covariance[(row, column)].clone();
+        }
+    }
+    estimate
+}
+
+/// The estimates of all modes as they are mixed for mode j: each with what it lacks taken from j.
+fn augmented_for<T: Real, const N: usize, const M: usize>(
+    problem: &Problem<T, N, M>,
+    previous: &Step<T, N, M>,
+    j: usize,
+) -> Vec<Gaussian<T, N>> {
+    let estimates = previous.updated.iter().zip(&problem.modes);
+    estimates
+        .map(|(estimate, mode)| augmented(estimate, &previous.updated[j], mode))
+        .collect()
+}
+
+impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
+    /// The table with mixed and combined covariances index by index, [`index_wise_covariance`].
+    #[must_use]
+    pub fn with_index_wise_mixing(self) -> Self {
+        Self {
+            mixed_covariance: |problem, previous, now, j| {
+                let (weights, mean) = (&now.mixing_probabilities[j], &now.mixed[j].mean);
+                index_wise_covariance(weights, &previous.updated, mean, &problem.modes)
+            },
+            combined_prediction_covariance: |problem, _, now| {
+                let (weights, mean) = (&now.predicted_mode_probabilities, &now.combined_prediction.mean);
+                index_wise_covariance(weights, &now.predicted, mean, &problem.modes)
+            },
+            combined_covariance: |problem, _, now| {
+                let (weights, mean) = (&now.mode_probabilities, &now.combined.mean);
+                index_wise_covariance(weights, &now.updated, mean, &problem.modes)
+            },
+            ..self
+        }
+    }
+
+    /// The table with unbiased mixing, [`augmented`]. The combined estimate is that of the mixture as ever.
+    #[must_use]
+    pub fn with_unbiased_mixing(self) -> Self {
+        Self {
+            mixed_mean: |problem, previous, now, j| {
+                mixture_mean(&now.mixing_probabilities[j], &augmented_for(problem, previous, j))
+            },
+            mixed_covariance: |problem, previous, now, j| {
+                let estimates = augmented_for(problem, previous, j);
+                mixture_covariance(&now.mixing_probabilities[j], &estimates, &now.mixed[j].mean)
+            },
+            ..self
+        }
+    }
+}

@@ -1,0 +1,242 @@
+//! The checks that a problem file must pass before it is run.
+//!
+//! After this file the reader knows how every defect of a file becomes one sentence with the place inside the file. Shapes are checked here,
+//! values by the cycle itself.
+
+use super::invalid::{Class, Invalid};
+use super::problem::{
+    Conventions, FORMAT, FilterFile, FixedGainFile, MIXINGS, MeasurementFile, ProblemFile, RULES, Rows,
+};
+use super::shape;
+use super::trace::Dimensions;
+use crate::imm::InvalidProblem;
+use crate::model::Conversion;
+
+impl ProblemFile {
+    /// Checks all that the filter relies on.
+    ///
+    /// # Errors
+    ///
+    /// [`Invalid`] with the place inside the file.
+    pub fn check(&self) -> Result<(), Invalid> {
+        if self.format != FORMAT {
+            let reason = format!("is {:?}, but this program reads {FORMAT:?}", self.format);
+            return Err(Invalid::new(Class::Format, "problem.format", reason));
+        }
+        self.check_conventions()?;
+        self.check_shapes()?;
+        self.check_filter()?;
+        self.check_measurements()?;
+        shape::dispatch(self.state.len(), self.noise.len(), TypedCheck(self))?
+    }
+
+    fn check_conventions(&self) -> Result<(), Invalid> {
+        let given = &self.conventions;
+        let pairs = [
+            ("square_root", &given.square_root),
+            ("angle_mean", &given.angle_mean),
+            ("first_step", &given.first_step),
+            ("log_likelihood", &given.log_likelihood),
+        ];
+        let later = [
+            ("unequal_dimensions", &given.unequal_dimensions),
+            ("converted_covariance", &given.converted_covariance),
+        ];
+        let later = later
+            .into_iter()
+            .filter_map(|(key, value)| Some((key, value.as_ref()?)));
+        for (key, value) in pairs.into_iter().chain(later) {
+            if !Conventions::default().has(key, value) {
+                let reason = format!("is {value:?}, which no problem of this format has");
+                return Err(Invalid::new(
+                    Class::Unknown,
+                    format!("problem.conventions.{key}"),
+                    reason,
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    fn check_shapes(&self) -> Result<(), Invalid> {
+        let Dimensions { n, m, r, .. } = self.dimensions();
+        check_length("problem.units", self.units.len(), n)?;
+        check_matrix("problem.R", &self.noise, m, m)?;
+        if r == 0 {
+            return Err(Invalid::new(
+                Class::Shape,
+                "problem.modes",
+                "is empty; the filter needs at least one",
+            ));
+        }
+        for (j, mode) in self.modes.iter().enumerate() {
+            check_matrix(&format!("problem.modes[{j}].F"), &mode.transition, n, n)?;
+            check_matrix(&format!("problem.modes[{j}].Q"), &mode.noise, n, n)?;
+        }
+        match &self.measurement {
+            MeasurementFile::Linear { matrix } => check_matrix("problem.measurement.H", matrix, m, n)?,
+            MeasurementFile::RangeBearing { components, .. } => {
+                check_length("problem.measurement.components", components.len(), m)?;
+            }
+        }
+        check_matrix("problem.transition", &self.transition, r, r)?;
+        check_length("problem.initial.modes", self.initial.modes.len(), r)?;
+        check_length(
+            "problem.initial.mode_probabilities",
+            self.initial.mode_probabilities.len(),
+            r,
+        )?;
+        for (j, estimate) in self.initial.modes.iter().enumerate() {
+            check_length(&format!("problem.initial.modes[{j}].mean"), estimate.mean.len(), n)?;
+            let field = format!("problem.initial.modes[{j}].covariance");
+            match &estimate.covariance {
+                Some(rows) if self.filter.scope().covariances => check_matrix(&field, rows, n, n)?,
+                Some(_) => {
+                    let reason = "is given, but filters with fixed gains have no covariance";
+                    return Err(Invalid::new(Class::Format, field, reason));
+                }
+                None if self.filter.scope().covariances => {
+                    return Err(Invalid::new(Class::Format, field, "is missing"));
+                }
+                None => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn check_filter(&self) -> Result<(), Invalid> {
+        match &self.filter {
+            FilterFile::Cubature { rule } if !RULES.contains(&rule.as_str()) => {
+                let reason = format!("is {rule:?}; known are {}", RULES.join(", "));
+                Err(Invalid::new(Class::Unknown, "problem.filter.rule", reason))
+            }
+            FilterFile::Kalman {} | FilterFile::FixedGain { .. }
+                if !matches!(self.measurement, MeasurementFile::Linear { .. }) =>
+            {
+                let name = self.filter.name();
+                let reason =
+                    format!("is {name}, which has no range and bearing; use a filter with points, or converted");
+                Err(Invalid::new(Class::Unknown, "problem.filter.kind", reason))
+            }
+            FilterFile::Converted { conversion } if conversion.parse::<Conversion>().is_err() => {
+                let reason = format!(
+                    "is {conversion:?}; known are {}",
+                    Conversion::ALL.map(Conversion::name).join(", ")
+                );
+                Err(Invalid::new(Class::Unknown, "problem.filter.conversion", reason))
+            }
+            FilterFile::Converted { .. } if matches!(self.measurement, MeasurementFile::Linear { .. }) => {
+                let reason = "is converted, but a linear measurement is no range and bearing to be converted";
+                Err(Invalid::new(Class::Unknown, "problem.filter.kind", reason))
+            }
+            FilterFile::FixedGain { mixing, modes } => self.check_fixed_gains(mixing, modes),
+            _ => Ok(()),
+        }
+    }
+
+    fn check_fixed_gains(&self, mixing: &str, modes: &[FixedGainFile]) -> Result<(), Invalid> {
+        let Dimensions { n, m, r, .. } = self.dimensions();
+        if !MIXINGS.contains(&mixing) {
+            let reason = format!("is {mixing:?}; known are {}", MIXINGS.join(", "));
+            return Err(Invalid::new(Class::Unknown, "problem.filter.mixing", reason));
+        }
+        check_length("problem.filter.modes", modes.len(), r)?;
+        for (j, mode) in modes.iter().enumerate() {
+            check_matrix(&format!("problem.filter.modes[{j}].gain"), &mode.gain, n, m)?;
+            let field = format!("problem.filter.modes[{j}].innovation_covariance");
+            check_matrix(&field, &mode.innovation_covariance, m, m)?;
+        }
+        Ok(())
+    }
+
+    fn check_measurements(&self) -> Result<(), Invalid> {
+        let m = self.noise.len();
+        for (place, entry) in self.measurements.iter().enumerate() {
+            if entry.step != place + 1 {
+                let field = format!("problem.measurements[{place}].step");
+                let reason = format!(
+                    "is {}, but steps count 1, 2, 3 without a gap: {}",
+                    entry.step,
+                    place + 1
+                );
+                return Err(Invalid::new(Class::Shape, field, reason));
+            }
+            let Some(z) = &entry.z else { continue };
+            let field = format!("problem.measurements[{place}].z");
+            check_length(&field, z.len(), m)?;
+            for (row, value) in z.iter().enumerate() {
+                if !value.is_finite() {
+                    return Err(Invalid::new(
+                        Class::NotFinite,
+                        format!("{field}[{row}]"),
+                        "is not finite",
+                    ));
+                }
+                if self.is_range(row) && *value < 0.0 {
+                    let reason = format!("is {value}, a negative range; a range is a distance");
+                    return Err(Invalid::new(Class::Range, format!("{field}[{row}]"), reason));
+                }
+                if self.is_bearing(row) && value.abs() > 2.0 * std::f64::consts::PI {
+                    let reason = format!("is {value}, a bearing outside ±2π: is it in degrees?");
+                    return Err(Invalid::new(Class::Angle, format!("{field}[{row}]"), reason));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Puts a problem into doubles and lets the cycle check it.
+struct TypedCheck<'a>(&'a ProblemFile);
+
+impl shape::Work for TypedCheck<'_> {
+    type Output = Result<(), Invalid>;
+
+    fn run<const N: usize, const M: usize>(self) -> Self::Output {
+        let setup = self.0.setup_in_doubles::<N, M>()?;
+        setup.problem.check(&setup.initial).map_err(|error| of_problem(&error))
+    }
+}
+
+/// The class and the place of what the cycle refuses.
+fn of_problem(error: &InvalidProblem) -> Invalid {
+    let class = match error {
+        InvalidProblem::Length { .. }
+        | InvalidProblem::NoModes
+        | InvalidProblem::RuleLengths { .. }
+        | InvalidProblem::Position { .. } => Class::Shape,
+        InvalidProblem::NotFinite { .. } => Class::NotFinite,
+        InvalidProblem::NegativeProbability { .. } | InvalidProblem::NotNormalised { .. } => Class::NotAProbability,
+        InvalidProblem::NotSymmetric { .. } => Class::NotSymmetric,
+        InvalidProblem::NotPositive { .. } => Class::NotPositiveDefinite,
+        InvalidProblem::NotLinear
+        | InvalidProblem::Rule { .. }
+        | InvalidProblem::FixedGains { .. }
+        | InvalidProblem::Conversion { .. }
+        | InvalidProblem::NotRangeAndBearing
+        | InvalidProblem::CorrelatedNoise => Class::Unknown,
+        InvalidProblem::CovarianceGiven { .. } => Class::Format,
+    };
+    // The sentence starts with the field in backquotes.
+    let sentence = error.to_string();
+    match sentence.strip_prefix('`').and_then(|rest| rest.split_once('`')) {
+        Some((field, rest)) => Invalid::new(class, format!("problem.{field}"), rest.trim_start()),
+        None => Invalid::new(class, "problem", sentence),
+    }
+}
+
+fn check_length(field: &str, found: usize, expected: usize) -> Result<(), Invalid> {
+    if found == expected {
+        return Ok(());
+    }
+    let reason = format!("has {found} entries where {expected} are needed");
+    Err(Invalid::new(Class::Shape, field, reason))
+}
+
+fn check_matrix(field: &str, rows: &Rows, height: usize, width: usize) -> Result<(), Invalid> {
+    check_length(field, rows.len(), height)?;
+    for (place, row) in rows.iter().enumerate() {
+        check_length(&format!("{field}[{place}]"), row.len(), width)?;
+    }
+    Ok(())
+}
