@@ -411,7 +411,7 @@ fn components_without_variance_change_an_unscented_rule_exactly_when_they_change
 #[test]
 fn constant_velocity_among_six_components_has_the_unscented_moments_of_four_when_kappa_is_three_minus_n() {
     // A predicted estimate of [x, y, vx, vy], by a lower factor of its covariance, and the same with an acceleration of zero.
-    let root = matrix![3, 0, 0, 0; -1, 2, 0, 0; 1, 1, 2, 0; 2, -1, 0, 1].map(|entry| Surd::integer(entry));
+    let root = matrix![3, 0, 0, 0; -1, 2, 0, 0; 1, 1, 2, 0; 2, -1, 0, 1].map(Surd::integer);
     let mean = vector![-1000, 1000, 4, 3].map(Surd::integer);
     let mut padded_root = SMatrix::<Surd, 6, 6>::zeros();
     padded_root.fixed_view_mut::<4, 4>(0, 0).copy_from(&root);
