@@ -72,13 +72,11 @@ impl Conversion {
         }
     }
 
-    /// The converted position z, m — sustika2015 (20)-(21).
+    /// The converted position z, m.
     ///
-    /// | symbol | here               | unit | meaning                                    |
-    /// |--------|--------------------|------|--------------------------------------------|
-    /// | r      | `range`            | m    | as measured                                |
-    /// | θ      | `bearing`          | rad  | as measured, counter-clockwise from x       |
-    /// | σ_θ²   | `bearing_variance` | rad² | of the sensor; the standard one ignores it |
+    /// Source: [`converted_position`], which is sustika2015 (20)-(21), times [`Conversion::factor`].
+    ///
+    /// Range and bearing as measured, m and rad, counter-clockwise from x; the standard one ignores the bearing's variance, rad².
     ///
     /// # Examples
     ///
@@ -100,14 +98,11 @@ impl Conversion {
         }
     }
 
-    /// The covariance R of the converted position, m² — sustika2015 (22)-(26).
+    /// The covariance R of the converted position, m².
     ///
-    /// | symbol | here               | unit | meaning                                |
-    /// |--------|--------------------|------|----------------------------------------|
-    /// | r      | `range`            | m    | as measured                            |
-    /// | θ      | `bearing`          | rad  | as measured, counter-clockwise from x   |
-    /// | σ_r²   | `range_variance`   | m²   | of the sensor                          |
-    /// | σ_θ²   | `bearing_variance` | rad² | of the sensor                          |
+    /// Source: [`Conversion::variances`], turned by [`in_the_plane`]; of the standard one it is sustika2015 (22)-(26).
+    ///
+    /// Range and bearing as measured, m and rad, counter-clockwise from x; the variances of the sensor, m² and rad².
     ///
     /// # Examples
     ///
@@ -217,6 +212,8 @@ impl FromStr for Conversion {
 /// | r     | `range`           | m    | as measured   |
 /// | θ     | `cosine`, `sine`  |      | of the bearing |
 ///
+/// Source: sustika2015, section 3.1.
+///
 /// Why: the definition of polar coordinates. Given the truth its mean is w r (cos θ, sin θ) with w = e^(−σ_θ²/2) < 1: the measured
 /// positions lie on an arc, and their mean inside of it. The bias is r σ_θ²/2 towards the sensor, to first order.
 ///
@@ -246,6 +243,8 @@ pub fn converted_position<T: Field>(range: &T, cosine: &T, sine: &T) -> Vector2<
 /// | θ     | `cosine`, `sine`   |      | of the bearing |
 /// | σ_r²  | `range_variance`   | m²   | of the sensor  |
 /// | σ_θ²  | `bearing_variance` | rad² | of the sensor  |
+///
+/// Source: sustika2015, section 3.1; Bar-Shalom, Li and Kirubarajan 2001, section 10.4.3.
 ///
 /// Why: J diag(σ_r², σ_θ²) Jᵀ with the Jacobian J = (u, r n) of the position: the variances σ_r² along and r² σ_θ² across the line of
 /// sight ([`standard_variances`]), turned ([`in_the_plane`]). What is left out is of second order in the variances; the rule of thumb is

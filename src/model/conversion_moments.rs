@@ -126,7 +126,7 @@ pub fn over_bearings<T: Field>([along, across]: &[T; 2], attenuation: &T) -> [T;
 /// | σ_r²   | `range_variance` | m²   |                                            |
 /// | w      | `attenuation`    |      | [`attenuation`](fn@attenuation)             |
 ///
-/// Source: the square multiplied out, with E[z] = f w r u and x = r u.
+/// Source: the square multiplied out, with `E[z] = f w r u` and `x = r u`.
 ///
 /// # Examples
 ///

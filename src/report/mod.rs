@@ -7,6 +7,7 @@ pub mod cases;
 pub mod check;
 pub mod check_json;
 pub mod claims;
+pub mod conversion;
 pub mod figure;
 pub mod fit_error;
 pub mod long_term;

@@ -10,11 +10,13 @@
 //! - `angles`: bearings around ±π, strong curvature, conventions;
 //! - `numbers`: large positions, other units, singular covariances;
 //! - `runs`: the papers' scenarios;
+//! - `converted`: filters that convert their measurements, modes of unequal dimensions, and the scenario of the paper that has both;
 //! - `fixed_gain`: filters whose gains are given, and the scenario of the paper that has them;
 //! - `rejected`: problems that must be refused.
 
 mod angles;
 mod chain;
+mod converted;
 mod draft;
 mod equations;
 mod fixed_gain;
@@ -40,6 +42,7 @@ pub fn all() -> Vec<ProblemFile> {
         numbers::all(),
         runs::all(),
         fixed_gain::all(),
+        converted::all(),
     ]
     .concat()
 }
@@ -50,7 +53,7 @@ pub fn rejected() -> Vec<Rejected> {
 }
 
 /// Every flag, and what a problem with it is like.
-pub const FLAGS: [(&str, &str); 44] = [
+pub const FLAGS: [(&str, &str); 46] = [
     (
         "single-equation",
         "All is trivial but one equation, or one group of them.",
@@ -155,6 +158,11 @@ pub const FLAGS: [(&str, &str); 44] = [
     (
         "fixed-gain",
         "Gains and innovation covariances are given, and there is no covariance of the state.",
+    ),
+    ("converted", "Range and bearing are converted to a position."),
+    (
+        "unequal-dimensions",
+        "A mode lacks an entry of the state that another has; how they are mixed is a convention.",
     ),
     ("embedded", "A motion sets an entry of the state to zero."),
     ("rejected", "It must be refused."),

@@ -3,9 +3,11 @@
 //! After this file the reader knows one or two defects of each class. Each problem is a published one in which exactly one thing is wrong,
 //! so that a program that refuses it refuses it for that.
 
+use super::converted::converted;
 use super::draft::Draft;
 use super::fixed_gain::plane_with_gains;
 use super::scene::{plane, radar};
+use crate::model::Conversion;
 use crate::oracle::invalid::Class;
 use crate::oracle::problem::{FilterFile, FixedGainFile, MeasurementFile, ProblemFile};
 
@@ -14,7 +16,15 @@ pub type Rejected = (ProblemFile, Class, &'static str);
 
 /// The problems of this file.
 pub(super) fn all() -> Vec<Rejected> {
-    [shapes(), probabilities(), covariances(), unknown(), fixed_gains()].concat()
+    [
+        shapes(),
+        probabilities(),
+        covariances(),
+        unknown(),
+        fixed_gains(),
+        conversions(),
+    ]
+    .concat()
 }
 
 /// step.n4-m2.two-modes with a change.
@@ -40,6 +50,13 @@ fn fixed(
         }
     };
     refused(plane_with_gains("mixed"), "step.fixed-gain", id, class, reason, change)
+}
+
+/// converted.generic with a change.
+fn convert(id: &str, class: Class, reason: &'static str, change: impl FnOnce(&mut ProblemFile)) -> Rejected {
+    let about = format!("The problem converted.generic, but {reason}. It must be refused.");
+    let draft = converted(Conversion::Standard, [9.0, 0.055]).with(change);
+    (draft.named(id, &["rejected", "zeros"], &about), class, reason)
 }
 
 fn refused(
@@ -208,6 +225,27 @@ fn fixed_gains() -> Vec<Rejected> {
             Class::Format,
             "an estimate has a covariance, which filters with fixed gains do not have",
             |problem| problem.initial.modes[0] = plane().0.initial.modes[0].clone(),
+        ),
+    ]
+}
+
+fn conversions() -> Vec<Rejected> {
+    vec![
+        convert(
+            "rejected.range.negative",
+            Class::Range,
+            "its range is negative",
+            |problem| problem.measurements[0].z = Some(vec![-207.0, -0.41]),
+        ),
+        convert(
+            "rejected.unknown.conversion",
+            Class::Unknown,
+            "its conversion, by-guess, does not exist",
+            |problem| {
+                problem.filter = FilterFile::Converted {
+                    conversion: "by-guess".to_owned(),
+                };
+            },
         ),
     ]
 }
