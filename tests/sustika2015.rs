@@ -372,6 +372,35 @@ fn a_setting_with_the_parameters_of_the_truth_is_the_first_scenario() {
 }
 
 #[test]
+fn what_a_point_counts_is_what_its_runs_show() {
+    const RUNS: usize = 21;
+    let scenario = scenario(&Choices::of("scenario", "matched-manoeuvring").with("window", "printed")).unwrap();
+    let point = sweep::point(&scenario, RUNS, 1, &|| ());
+    let plain = scenario.setup.unscented(Bearings::Plain);
+    let outcomes: Vec<(bool, f64)> = (0..RUNS)
+        .map(|run| {
+            let draw = scenario.trajectory.draw(run, 1);
+            let jumps = bearing_jumps(&draw.measurements) > 0;
+            (jumps, scenario.track(&plain, &draw).fit_error.unwrap())
+        })
+        .collect();
+    let count = |of: &dyn Fn(&(bool, f64)) -> bool| outcomes.iter().filter(|outcome| of(outcome)).count();
+    let fit = &point.fits[2];
+    assert_eq!(point.runs_with_jump, count(&|outcome| outcome.0));
+    assert_eq!(fit.divergent, count(&|outcome| outcome.1 > 20.0));
+    assert_eq!(fit.divergent_with_jump, count(&|outcome| outcome.0 && outcome.1 > 20.0));
+    assert!(fit.divergent > 0 && fit.divergent < point.runs_with_jump && point.runs_with_jump < RUNS);
+    assert_eq!((fit.failed, point.fits[1].divergent), (0, 0));
+    let mut fits: Vec<f64> = outcomes.iter().map(|outcome| outcome.1).collect();
+    fits.sort_by(f64::total_cmp);
+    assert_eq!(fit.median.to_bits(), fits[RUNS / 2].to_bits());
+    // The differences of the means are the means of the differences, but for the order of 21 sums.
+    let [converted, wrapped, plain] = point.fits.map(|fit| fit.mean.value);
+    assert!((point.plain_less_wrapped.value - (plain - wrapped)).abs() < 1e-12 * plain);
+    assert!((point.unscented_less_converted.value - (wrapped - converted)).abs() < 1e-12 * plain);
+}
+
+#[test]
 fn a_sweep_runs_all_trajectories_and_both_kinds_of_bearings() {
     for parameter in ["scenario", "wrapping"] {
         let refused = Sweep::new(&Choices::of(parameter, "never"), 2, 1).unwrap_err();
