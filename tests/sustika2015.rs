@@ -435,7 +435,7 @@ fn a_journal_that_is_cut_anywhere_is_continued_to_the_same_bytes() {
         for (setting, point) in settings.iter().zip(&points).skip(found.len()) {
             journal.append(setting, point).unwrap();
         }
-        assert_eq!(std::fs::read(&path).unwrap(), whole, "cut at {length}");
+        assert!(std::fs::read(&path).unwrap() == whole, "cut at {length}");
     }
 }
 
@@ -477,11 +477,11 @@ fn a_sweep_that_was_interrupted_has_the_same_result() {
     };
     let continued = sweep.run(&other, &count).unwrap();
     assert_eq!(continued, whole);
-    assert_eq!(std::fs::read(&other).unwrap(), bytes);
+    assert!(std::fs::read(&other).unwrap() == bytes, "the journals differ");
     assert_eq!(steps.into_inner(), 2 * 280, "progress counts what was already there");
     // Finished: nothing is run and nothing is written.
     assert_eq!(sweep.run(&other, &|| ()).unwrap(), whole);
-    assert_eq!(std::fs::read(&other).unwrap(), bytes);
+    assert!(std::fs::read(&other).unwrap() == bytes, "the journals differ");
     assert_eq!(sweep.run_without_journal(&|| ())[..3], whole[..3]);
 }
 
