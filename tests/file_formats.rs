@@ -380,7 +380,7 @@ fn wrong_shapes() -> Vec<Defect> {
 
 #[allow(clippy::too_many_lines, reason = "a table")]
 fn wrong_values() -> Vec<Defect> {
-    use Class::{Angle, Format, NotAProbability, NotPositiveDefinite, NotSymmetric, Unknown};
+    use Class::{Angle, Format, NotAProbability, NotPositiveDefinite, NotSymmetric, Range, Unknown};
     let square = |x: f64, y: f64, z: f64, w: f64| json!([[x, y], [z, w]]);
     let symmetric = "is not symmetric";
     let semidefinite = "is not positive semidefinite";
@@ -624,6 +624,49 @@ fn wrong_values() -> Vec<Defect> {
             Angle,
             "problem.measurements[0].z[1]",
             "is it in degrees?",
+        ),
+        (
+            POLAR,
+            "/measurements/0/z",
+            json!([-207.0, -0.41]),
+            Range,
+            "problem.measurements[0].z[0]",
+            "a range is a distance",
+        ),
+        (
+            POLAR,
+            "/filter",
+            json!({ "kind": "converted", "conversion": "by-guess" }),
+            Unknown,
+            "problem.filter.conversion",
+            "known are standard, additive, multiplicative, modified-unbiased",
+        ),
+        (
+            POLAR,
+            "/filter",
+            json!({ "kind": "converted", "conversion": "standard" }),
+            Unknown,
+            "problem.R",
+            "a covariance between range and bearing",
+        ),
+        (
+            LINEAR,
+            "/filter",
+            json!({ "kind": "converted", "conversion": "standard" }),
+            Unknown,
+            "problem.filter.kind",
+            "no range and bearing to be converted",
+        ),
+        (
+            LINEAR,
+            "/conventions",
+            json!({
+                "square_root": "cholesky-lower", "angle_mean": "centre-point", "first_step": "mixed", "log_likelihood": "full",
+                "unequal_dimensions": "by-guess",
+            }),
+            Unknown,
+            "problem.conventions.unequal_dimensions",
+            "by-guess",
         ),
     ]
 }

@@ -10,7 +10,7 @@ use immaculate::oracle::case::{self, Case, Expected};
 use immaculate::oracle::check::{CaseReport, Outcome, Report, Selection, check};
 use immaculate::oracle::diagnose::Diagnosis;
 use immaculate::oracle::judge::Finding;
-use immaculate::oracle::problem::ProblemFile;
+use immaculate::oracle::problem::{FilterFile, ProblemFile};
 use immaculate::oracle::subject::{Answer, Broken, Level, Planted, Ready, Subject};
 use immaculate::oracle::variant::{self, Kind, Variant, catalogue};
 use rayon::prelude::*;
@@ -23,7 +23,9 @@ use std::sync::LazyLock;
 fn short_cases() -> Vec<String> {
     let is_light = |case: &&Case| {
         let n = case.problem.dimensions().n;
-        let has_many_points = n > 5 || case.problem.filter.name().starts_with("gauss-hermite");
+        let name = case.problem.filter.name();
+        let draws_many = matches!(case.problem.filter, FilterFile::Cubature { .. });
+        let has_many_points = (n > 5 && draws_many) || name.starts_with("gauss-hermite");
         case.problem.measurements.len() <= 10 && !has_many_points && matches!(case.expected, Expected::Trace(_))
     };
     let cases = case::all().unwrap().iter();
