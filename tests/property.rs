@@ -785,7 +785,7 @@ proptest! {
         let perfect = errors.clone().map(|axis| vec![0.0; axis.len()]);
         let nothing = truth.clone().map(|axis| axis.iter().map(|x| -x).collect());
         for form in FitForm::ALL {
-            prop_assert_eq!(fit(form, &perfect, &truth), 0.0);
+            prop_assert_eq!(fit(form, &perfect, &truth).to_bits(), 0.0_f64.to_bits());
             // The estimate 0: each coordinate has 100 %, and the forms show how they count to two.
             let expected = match form {
                 FitForm::RootSumSquare => 100.0 * 2.0_f64.sqrt(),
@@ -814,11 +814,12 @@ proptest! {
         for form in FitForm::ALL {
             let error = fit(form, &errors, &truth);
             // Powers of two do not round, other units do.
-            prop_assert_eq!(fit(form, &scaled(&errors, unit), &scaled(&truth, unit)), error);
+            let same = fit(form, &scaled(&errors, unit), &scaled(&truth, unit));
+            prop_assert_eq!(same.to_bits(), error.to_bits());
             let other = fit(form, &scaled(&errors, factor), &scaled(&truth, factor));
             prop_assert!((other / error - 1.0).abs() <= 2.0 * FIT_ROUNDING);
-            prop_assert_eq!(2.0 * fit(form, &errors, &further), error);
-            prop_assert_eq!(fit(form, &errors, &nearer), 1024.0 * error);
+            prop_assert_eq!((2.0 * fit(form, &errors, &further)).to_bits(), error.to_bits());
+            prop_assert_eq!(fit(form, &errors, &nearer).to_bits(), (1024.0 * error).to_bits());
         }
         // A radar that stands 1 km to the right: the errors are the same, the measure is not.
         let moved = [truth[0].iter().map(|x| x + 1000.0).collect(), truth[1].clone()];

@@ -54,6 +54,31 @@ fn derbez2000_under_each_open_choice() {
 }
 
 #[test]
+fn sustika2015_under_each_open_choice() {
+    let defaults = Choices::default();
+    let mut text = format!(
+        "{:<60} {:>18} {:>18} {:>18}\n",
+        "percentage fit error", "IMM-CMKF", "IMM-UKF", "difference"
+    );
+    for simulation in Paper::Sustika2015.simulations(&defaults) {
+        for choices in [vec![simulation.clone()], Paper::Sustika2015.open_choices(&simulation)].concat() {
+            let reproduction = reproduce(Paper::Sustika2015, &choices);
+            let figures = reproduction.filters.iter().map(|filter| filter.fit_error);
+            let difference = reproduction.fit_differences[0].estimate;
+            let _ = write!(text, "{:<60}", choices.describe());
+            for estimate in figures.chain([Some(difference)]) {
+                let cell = estimate.map_or("none".to_owned(), |e| {
+                    format!("{:.3} ± {:.3}", e.value, e.standard_error)
+                });
+                let _ = write!(text, " {cell:>18}");
+            }
+            trim(&mut text);
+        }
+    }
+    insta::assert_snapshot!(text);
+}
+
+#[test]
 fn zhu2016_under_each_open_choice() {
     insta::assert_snapshot!(open_choices(Paper::Zhu2016));
 }

@@ -488,6 +488,7 @@ fn hand_made_run(errors: &[f64]) -> Run {
         nees: vec![4.0; errors.len()],
         nis: vec![2.0; errors.len()],
         mode_probabilities: vec![vec![1.0, 0.0, 0.0]; errors.len()],
+        fit_error: None,
         failure: None,
         time: Duration::ZERO,
     }

@@ -7,8 +7,8 @@
 use immaculate::model::Measurement;
 use immaculate::model::motion::acceleration_input;
 use immaculate::paper::scenario::{Motion, Scenario};
-use immaculate::paper::specification::{self, Choices, Equation, Specification};
-use immaculate::paper::{Effort, Paper, derbez2000, liu2017, zhu2016};
+use immaculate::paper::specification::{Choices, Equation, Specification};
+use immaculate::paper::{Effort, Paper, derbez2000, liu2017, sustika2015, zhu2016};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
@@ -412,20 +412,85 @@ fn the_constants_of_derbez2000_are_the_printed_ones() {
 }
 
 #[test]
+fn the_constants_of_sustika2015_are_the_printed_ones() {
+    let mut printed = printed_table("sustika2015");
+    let of_scenario = |name: &str| sustika2015::scenario(&Choices::of("scenario", name)).unwrap();
+    let (matched, mismatched) = (of_scenario("matched-straight"), of_scenario("mismatched-straight"));
+    for (key, radians) in [
+        ("bearing-deviation-degrees", matched.setup.deviations[1]),
+        ("filter-bearing-deviation-degrees", mismatched.setup.deviations[1]),
+    ] {
+        let degrees = printed.remove(key).unwrap().as_float().unwrap();
+        // The same product as in the constant, so the same double.
+        assert_eq!((degrees * sustika2015::DEGREE).to_bits(), radians.to_bits());
+    }
+    let imm = &matched.contestants[0];
+    let truth = matched.trajectory.draw(0, 1).truth;
+    let mut code = toml::Table::new();
+    let mut put = |key: &str, value: toml::Value| {
+        code.insert(key.to_owned(), value);
+    };
+    let modes = imm.problem.modes.iter().map(|mode| mode.name.clone());
+    put("models", modes.collect::<Vec<_>>().into());
+    let filters = matched.contestants.iter().map(|filter| filter.name.to_owned());
+    put("filters", filters.collect::<Vec<_>>().into());
+    put("sampling-interval", sustika2015::INTERVAL.into());
+    put("duration", integer(truth.len()));
+    put("runs", integer(sustika2015::RUNS));
+    put("radar", sustika2015::RADAR.to_vec().into());
+    put("initial-position", vec![truth[0][0], truth[0][1]].into());
+    put("initial-velocity", vec![truth[0][2], truth[0][3]].into());
+    assert_eq!(
+        sustika2015::NOISE_DENSITY.to_bits(),
+        matched.setup.noise_density.to_bits()
+    );
+    put("noise-density", matched.setup.noise_density.into());
+    put("range-deviation", matched.setup.deviations[0].into());
+    let seconds = |[first, last]: [usize; 2]| toml::Value::from(vec![integer(first), integer(last)]);
+    put(
+        "manoeuvring-seconds",
+        sustika2015::MANOEUVRING_SECONDS.map(seconds).to_vec().into(),
+    );
+    put("filter-noise-density", mismatched.setup.noise_density.into());
+    put("filter-range-deviation", mismatched.setup.deviations[0].into());
+    put("transition", rows(imm.problem.transition.iter().cloned()));
+    put(
+        "initial-probabilities",
+        sustika2015::INITIAL_PROBABILITIES.to_vec().into(),
+    );
+    put(
+        "initial-velocity-estimate",
+        sustika2015::INITIAL_VELOCITY_ESTIMATE.to_vec().into(),
+    );
+    put(
+        "swept-noise-densities",
+        sustika2015::SWEPT_NOISE_DENSITIES.to_vec().into(),
+    );
+    put(
+        "swept-bearing-deviations-degrees",
+        sustika2015::SWEPT_BEARING_DEGREES.to_vec().into(),
+    );
+    put("good-fit-error", sustika2015::GOOD_FIT_ERROR.into());
+    assert_eq!(code, printed);
+}
+
+#[test]
 fn parameters_of_one_scenario_change_that_one() {
-    let specification = Paper::Derbez2000.specification();
-    let text = |choices: &Choices| debug_text(Paper::Derbez2000, choices);
-    for scenario in ["manoeuvres", "acceleration"] {
-        let unchanged = text(&Choices::of("scenario", scenario));
-        for parameter in specification
-            .parameters
+    for paper in [Paper::Derbez2000, Paper::Sustika2015] {
+        let parameters = &paper.specification().parameters;
+        let text = |choices: &Choices| debug_text(paper, choices);
+        let scenarios = parameters
             .iter()
-            .filter(|parameter| parameter.name != "scenario")
-        {
-            let belongs = parameter.belongs_to(scenario);
-            for alternative in parameter.alternatives.iter().filter(|a| a.name != parameter.default) {
-                let choices = Choices::of("scenario", scenario).with(&parameter.name, &alternative.name);
-                assert_eq!(text(&choices) != unchanged, belongs, "{}", choices.describe());
+            .find(|parameter| parameter.name == "scenario")
+            .unwrap();
+        for scenario in scenarios.alternatives.iter().map(|alternative| &alternative.name) {
+            let unchanged = text(&Choices::of("scenario", scenario));
+            for parameter in parameters.iter().filter(|parameter| parameter.name != "scenario") {
+                let belongs = parameter.belongs_to(scenario);
+                for alternative in parameter.alternatives.iter().filter(|a| a.name != parameter.default) {
+                    let choices = Choices::of("scenario", scenario).with(&parameter.name, &alternative.name);
+                    assert_eq!(text(&choices) != unchanged, belongs, "{}", choices.describe());
+                }
             }
         }
     }
@@ -453,7 +518,8 @@ fn published_tables_are_rectangular_and_name_filters_that_are_run() {
 fn every_claim_has_exactly_one_judgement() {
     // Enough runs for a standard error; the verdicts themselves are not looked at.
     let effort = Effort { runs: Some(3), seed: 1 };
-    for paper in Paper::ALL {
+    // The judges of sustika2015 are not written yet.
+    for paper in Paper::ALL.into_iter().filter(|paper| *paper != Paper::Sustika2015) {
         let judgements = paper.judge(effort, &|| ()).unwrap();
         let judged: Vec<&str> = judgements.iter().map(|judgement| judgement.id.as_str()).collect();
         let claims: Vec<&str> = paper
@@ -515,10 +581,7 @@ fn root() -> &'static Path {
 
 /// What is held against the source: the specifications of all papers.
 fn specifications() -> Vec<&'static Specification> {
-    let mut specifications: Vec<&Specification> = Vec::from(Paper::ALL.map(Paper::specification));
-    // sustika2015 has equations and claims, and is no paper to be run yet.
-    specifications.extend([specification::sustika2015()]);
-    specifications
+    Vec::from(Paper::ALL.map(Paper::specification))
 }
 
 fn keys() -> impl Iterator<Item = &'static str> {

@@ -6,6 +6,7 @@ pub mod answer;
 pub mod cases;
 pub mod check;
 pub mod stability;
+pub mod sweep;
 pub mod trace;
 pub mod variants;
 

@@ -20,11 +20,13 @@
 //! - [`cycle`]: the one wiring that runs a table;
 //! - [`unequal`]: what is mixed where one mode has an entry of the state that another lacks;
 //! - [`diagonal_mixing`]: a labelled stand-in for the OMTM-IMM that zhu2016 compares itself with;
+//! - [`plain_bearing`]: bearings that are never wrapped;
 //! - [`printed`]: what the papers print wrongly.
 
 pub mod cycle;
 pub mod diagonal_mixing;
 pub mod equations;
+pub mod plain_bearing;
 pub mod printed;
 pub mod probability;
 pub mod problem;

@@ -19,11 +19,12 @@ pub mod result;
 pub mod scenario;
 pub mod simulation;
 pub mod specification;
+pub mod sustika2015;
 pub mod verdict;
 pub mod zhu2016;
 
 use monte_carlo::Progress;
-use result::{Quantity, Reproduction};
+use result::{Figure, Reproduction};
 use simulation::Simulation;
 use specification::{Choices, InvalidChoice, Specification};
 use verdict::Judgement;
@@ -33,6 +34,8 @@ use verdict::Judgement;
 pub enum Paper {
     /// Derbez, Rémillard and Jouan 2000.
     Derbez2000,
+    /// Sustika and Suryana 2015.
+    Sustika2015,
     /// Zhu, Wang and Yuan 2016.
     Zhu2016,
     /// Liu and Wu 2017.
@@ -50,12 +53,13 @@ pub struct Effort {
 
 impl Paper {
     /// All papers, in the order of their years.
-    pub const ALL: [Self; 3] = [Self::Derbez2000, Self::Zhu2016, Self::Liu2017];
+    pub const ALL: [Self; 4] = [Self::Derbez2000, Self::Sustika2015, Self::Zhu2016, Self::Liu2017];
 
     /// The paper's key.
     pub fn key(self) -> &'static str {
         match self {
             Self::Derbez2000 => "derbez2000",
+            Self::Sustika2015 => "sustika2015",
             Self::Zhu2016 => "zhu2016",
             Self::Liu2017 => "liu2017",
         }
@@ -65,6 +69,7 @@ impl Paper {
     pub fn specification(self) -> &'static Specification {
         match self {
             Self::Derbez2000 => specification::derbez2000(),
+            Self::Sustika2015 => specification::sustika2015(),
             Self::Zhu2016 => specification::zhu2016(),
             Self::Liu2017 => specification::liu2017(),
         }
@@ -73,8 +78,13 @@ impl Paper {
     /// The simulations that the paper reports, under the given choices: the first is that of its tables.
     pub fn simulations(self, chosen: &Choices) -> Vec<Choices> {
         let mut all = vec![chosen.clone()];
-        if self == Self::Derbez2000 && !chosen.parameters().any(|parameter| parameter == "scenario") {
-            all.push(chosen.clone().with("scenario", "acceleration"));
+        let parameters = self.specification().parameters.iter();
+        for parameter in parameters.filter(|p| p.name == "scenario" && chosen.chosen("scenario").is_none()) {
+            let others = parameter
+                .alternatives
+                .iter()
+                .filter(|other| other.name != parameter.default);
+            all.extend(others.map(|other| chosen.clone().with("scenario", &other.name)));
         }
         all
     }
@@ -95,6 +105,7 @@ impl Paper {
     pub fn simulation(self, choices: &Choices) -> Result<Box<dyn Simulation>, InvalidChoice> {
         Ok(match self {
             Self::Derbez2000 => Box::new(derbez2000::scenario(choices)?),
+            Self::Sustika2015 => Box::new(sustika2015::scenario(choices)?),
             Self::Zhu2016 => Box::new(zhu2016::scenario(choices)?),
             Self::Liu2017 => Box::new(liu2017::scenario(choices)?),
         })
@@ -108,7 +119,7 @@ impl Paper {
     /// [`InvalidChoice`] when a choice names no parameter or no alternative of this paper, or the paper has no such scenario.
     pub fn scenario(self, choices: &Choices) -> Result<scenario::Scenario, InvalidChoice> {
         match self {
-            Self::Derbez2000 => Err(InvalidChoice::OtherForm {
+            Self::Derbez2000 | Self::Sustika2015 => Err(InvalidChoice::OtherForm {
                 paper: self.key().to_owned(),
             }),
             Self::Zhu2016 => zhu2016::scenario(choices),
@@ -134,15 +145,22 @@ impl Paper {
     }
 
     /// What a row of a published table measures, where the simulation under these choices is the one that the table is of.
-    pub fn quantity_of_row(self, choices: &Choices, table: u32, row: &str) -> Option<Quantity> {
+    pub fn figure_of_row(self, choices: &Choices, table: u32, row: &str) -> Option<Figure> {
         match self {
             // Table 2 is of scenario 3, and scenario 1 has none.
             Self::Derbez2000 => {
                 let scenario = specification::derbez2000().chosen(choices, "scenario").ok()?;
-                derbez2000::quantity_of_row(row).filter(|_| table == 1 && scenario == "manoeuvres")
+                let is_of_table = table == 1 && scenario == "manoeuvres";
+                derbez2000::quantity_of_row(row)
+                    .filter(|_| is_of_table)
+                    .map(Figure::Error)
             }
-            Self::Zhu2016 => zhu2016::quantity_of_row(row),
-            Self::Liu2017 => liu2017::quantity_of_row(row),
+            Self::Sustika2015 => {
+                let scenario = specification::sustika2015().chosen(choices, "scenario").ok()?;
+                (sustika2015::scenario_of_row(table, row) == Some(scenario)).then_some(Figure::FitError)
+            }
+            Self::Zhu2016 => zhu2016::quantity_of_row(row).map(Figure::Error),
+            Self::Liu2017 => liu2017::quantity_of_row(row).map(Figure::Error),
         }
     }
 
@@ -154,6 +172,7 @@ impl Paper {
     pub fn judge(self, effort: Effort, progress: Progress) -> Result<Vec<Judgement>, InvalidChoice> {
         match self {
             Self::Derbez2000 => derbez2000::claims::judge(effort, progress),
+            Self::Sustika2015 => Ok(Vec::new()),
             Self::Zhu2016 => zhu2016::claims::judge(effort, progress),
             Self::Liu2017 => liu2017::claims::judge(effort, progress),
         }

@@ -56,6 +56,8 @@ pub struct Run {
     pub nis: Vec<f64>,
     /// Mode probabilities.
     pub mode_probabilities: Vec<Vec<f64>>,
+    /// The percentage fit error of the position, where the paper has one and the run came to its end.
+    pub fit_error: Option<f64>,
     /// The step that could not be computed, if there was one.
     pub failure: Option<Failure>,
     /// Time spent in the filter's steps.
@@ -85,6 +87,7 @@ pub fn track(contestant: &Contestant, draw: &Draw) -> Run {
         nees: Vec::with_capacity(draw.truth.len()),
         nis: Vec::with_capacity(draw.truth.len()),
         mode_probabilities: Vec::with_capacity(draw.truth.len()),
+        fit_error: None,
         failure: None,
         time: Duration::ZERO,
     };

@@ -70,6 +70,15 @@ impl Quantity {
     }
 }
 
+/// What a row of a published table is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Figure {
+    /// The overall error of a quantity.
+    Error(Quantity),
+    /// The percentage fit error of the position.
+    FitError,
+}
+
 /// How errors at single steps become one figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Average {
@@ -163,6 +172,25 @@ impl Comparison<'_> {
             &self.mean_squares(&runs, a, quantity, chosen),
             &self.mean_squares(&runs, b, quantity, chosen),
         )
+    }
+
+    /// The mean of a contestant's percentage fit errors, one a run; none where the paper has no such measure.
+    pub fn fit_error(&self, contestant: usize) -> Option<Estimate> {
+        let runs = self.completed(&[contestant]);
+        let of_runs: Option<Vec<f64>> = runs.iter().map(|run| run[contestant].fit_error).collect();
+        of_runs
+            .filter(|of_runs| !of_runs.is_empty())
+            .map(|of_runs| mean(&of_runs))
+    }
+
+    /// The mean over runs of one contestant's percentage fit error less another's; none where the paper has no such measure.
+    pub fn fit_difference(&self, a: usize, b: usize) -> Option<Estimate> {
+        let runs = self.completed(&[a, b]);
+        let of_run = |run: &&Vec<Run>| Some(run[a].fit_error? - run[b].fit_error?);
+        let of_runs: Option<Vec<f64>> = runs.iter().map(of_run).collect();
+        of_runs
+            .filter(|of_runs| !of_runs.is_empty())
+            .map(|of_runs| mean(&of_runs))
     }
 
     /// RMSE(k) of a contestant at every step.
@@ -270,6 +298,9 @@ pub struct Reproduction {
     pub filters: Vec<Performance>,
     /// Paired differences of the filters' overall errors.
     pub differences: Vec<Difference>,
+    /// Those of their percentage fit errors, where the paper has this measure.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub fit_differences: Vec<FitDifference>,
     /// The first run, where the paper shows one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub first_run: Option<FirstRun>,
@@ -303,6 +334,9 @@ pub struct Performance {
     pub failures: Vec<FailedRun>,
     /// Overall errors.
     pub errors: Vec<ErrorFigure>,
+    /// The mean percentage fit error of the position, where the paper has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fit_error: Option<Estimate>,
     /// RMSE(k).
     pub rmse: Vec<ErrorHistory>,
     /// Mean mode probabilities, `[step][mode]`.
@@ -386,6 +420,18 @@ pub struct Difference {
     pub estimate: Estimate,
 }
 
+/// A paired difference of percentage fit errors, %.
+#[derive(Debug, Clone, Serialize)]
+pub struct FitDifference {
+    /// The filter whose error comes first.
+    pub filter: String,
+    /// The filter whose error is subtracted.
+    pub minus: String,
+    /// The difference with its standard error.
+    #[serde(flatten)]
+    pub estimate: Estimate,
+}
+
 /// The probability with which a matched filter's mean is outside the bounds of [`Consistency`] at one step.
 pub const FALSE_ALARM: f64 = 0.05;
 
@@ -397,7 +443,7 @@ impl Reproduction {
             runs: results,
         };
         let filters = scenario.filters();
-        let mut differences = Vec::new();
+        let (mut differences, mut fit_differences) = (Vec::new(), Vec::new());
         for a in 0..filters.len() {
             for b in a + 1..filters.len() {
                 for quantity in [Quantity::Position, Quantity::Velocity] {
@@ -408,6 +454,11 @@ impl Reproduction {
                         estimate: comparison.difference(a, b, quantity),
                     });
                 }
+                fit_differences.extend(comparison.fit_difference(a, b).map(|estimate| FitDifference {
+                    filter: filters[a].name.clone(),
+                    minus: filters[b].name.clone(),
+                    estimate,
+                }));
             }
         }
         Self {
@@ -420,6 +471,7 @@ impl Reproduction {
             motions: scenario.motions(),
             filters: (0..filters.len()).map(|c| performance(&comparison, c)).collect(),
             differences,
+            fit_differences,
             first_run: scenario.first_path(seed).map(|path| first_run(&path, results)),
         }
     }
@@ -434,6 +486,19 @@ impl Reproduction {
         let filter = self.filters.iter().find(|performance| performance.name == filter)?;
         let figure = filter.errors.iter().find(|figure| figure.quantity == quantity)?;
         Some(figure.estimate)
+    }
+
+    /// A figure of a published table, as computed for a filter.
+    pub fn figure(&self, filter: &str, figure: Figure) -> Option<Estimate> {
+        match figure {
+            Figure::Error(quantity) => self.error(filter, quantity),
+            Figure::FitError => {
+                self.filters
+                    .iter()
+                    .find(|performance| performance.name == filter)?
+                    .fit_error
+            }
+        }
     }
 }
 
@@ -488,6 +553,7 @@ fn performance(comparison: &Comparison, c: usize) -> Performance {
         completed_runs: comparison.runs.len() - failures.len(),
         failures,
         errors: Quantity::ALL.into_iter().map(error).collect(),
+        fit_error: comparison.fit_error(c),
         rmse: Quantity::ALL.into_iter().map(history).collect(),
         mode_probabilities: comparison.mean_mode_probabilities(c),
         nees: consistency(comparison, c, nees, state_components, |run| &run.nees),

@@ -184,10 +184,16 @@ pub enum InvalidChoice {
         known: String,
     },
     /// A scenario of the usual form, of a paper that has none.
-    #[error("{paper} filters each coordinate by itself and has no scenario of the form that was asked for")]
+    #[error("{paper} has no scenario of the form that was asked for, of filters with the state [x, vx, y, vy]")]
     OtherForm {
         /// The paper.
         paper: String,
+    },
+    /// A choice of what a sweep runs all of.
+    #[error("a sweep runs every alternative of `{parameter}`; choose none")]
+    Swept {
+        /// The parameter.
+        parameter: String,
     },
     /// No such alternative.
     #[error("the parameter `{parameter}` of {paper} has no alternative `{name}`; it has {known}")]

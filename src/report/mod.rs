@@ -9,6 +9,7 @@ pub mod check_json;
 pub mod claims;
 pub mod conversion;
 pub mod figure;
+pub mod fit_error;
 pub mod long_term;
 pub mod reproduction;
 pub mod rule;

@@ -3,10 +3,11 @@
 //! After this file the reader knows what each column of a reproduced table is, and which published figure stands beside which
 //! computed one.
 
-use super::{citation, indent_of, standard_errors, table, wrapped};
+use super::{citation, fit_error, indent_of, standard_errors, table, wrapped};
 use crate::paper::Paper;
-use crate::paper::result::{Consistency, ErrorFigure, FirstRun, Performance, Quantity, Reproduction};
+use crate::paper::result::{Consistency, ErrorFigure, Figure, FirstRun, Performance, Quantity, Reproduction};
 use crate::paper::specification::{Choices, Specification, Table};
+use crate::statistics::Estimate;
 use crate::statistics::estimate::figure;
 use serde::Serialize;
 use std::fmt::Write;
@@ -44,7 +45,7 @@ pub fn published_and_computed(paper: Paper, reproduction: &Reproduction) -> Vec<
 fn compare(paper: Paper, reproduction: &Reproduction, table: &Table) -> Vec<Comparison> {
     let mut comparisons = Vec::new();
     for row in &table.rows {
-        let Some(quantity) = paper.quantity_of_row(&reproduction.choices, table.number, &row.name) else {
+        let Some(of_row) = paper.figure_of_row(&reproduction.choices, table.number, &row.name) else {
             continue;
         };
         for (column, published) in table.columns.iter().zip(&row.values) {
@@ -52,7 +53,7 @@ fn compare(paper: Paper, reproduction: &Reproduction, table: &Table) -> Vec<Comp
             let Some(filter) = reproduction.filters.iter().find(of_column) else {
                 continue;
             };
-            let Some(estimate) = reproduction.error(&filter.name, quantity) else {
+            let Some(estimate) = reproduction.figure(&filter.name, of_row) else {
                 continue;
             };
             comparisons.push(Comparison {
@@ -83,6 +84,8 @@ struct FilterErrors<'a> {
     name: &'a str,
     failed_runs: usize,
     errors: &'a [ErrorFigure],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    fit_error: Option<Estimate>,
 }
 
 /// See [`Errors`].
@@ -91,6 +94,7 @@ pub fn errors_of<'a>(reproduction: &'a Reproduction) -> Errors<'a> {
         name: &filter.name,
         failed_runs: filter.failures.len(),
         errors: &filter.errors,
+        fit_error: filter.fit_error,
     };
     Errors {
         choices: &reproduction.choices,
@@ -110,12 +114,25 @@ pub fn text(paper: Paper, reproduction: &Reproduction) -> String {
             text.push_str(DIFFERENCE_NOTE);
         }
     }
+    text.push_str(&fit_error::execution_times(specification, reproduction).unwrap_or_default());
     if published_and_computed(paper, reproduction).is_empty() {
         let _ = writeln!(text, "\nErrors, of which the paper publishes no figures");
         let _ = writeln!(text, "{}", unpublished(reproduction));
     }
     let _ = writeln!(text, "\nPaired differences: the same truth and noise for both filters");
     let _ = writeln!(text, "{}", differences(reproduction));
+    for difference in &reproduction.fit_differences {
+        let Estimate { value, standard_error } = difference.estimate;
+        let _ = writeln!(
+            text,
+            "{} − {}, percentage fit error: {} ± {} %, {} standard errors",
+            difference.filter,
+            difference.minus,
+            figure(value),
+            figure(standard_error),
+            standard_errors(difference.estimate.distance_from(0.0))
+        );
+    }
     if reproduction.filters.iter().any(|filter| !filter.delays.is_empty()) {
         let _ = writeln!(text, "\nDelay until the true mode is more likely than not");
         let _ = writeln!(text, "{}", delays(reproduction));
@@ -307,21 +324,27 @@ fn failures(reproduction: &Reproduction) -> String {
     text
 }
 
-/// The position errors under each open choice, one line an alternative.
+/// The position errors under each open choice, in the paper's measure, one line an alternative.
 pub fn alternatives(paper: Paper, reproductions: &[Reproduction]) -> String {
     let names: Vec<&str> = paper.specification().tables[0]
         .columns
         .iter()
         .map(String::as_str)
         .collect();
-    let mut header = vec!["position error (m)"];
+    let has_fit_error = |reproduction: &Reproduction| reproduction.filters.iter().any(|f| f.fit_error.is_some());
+    let (of, measure) = if reproductions.iter().any(has_fit_error) {
+        (Figure::FitError, "percentage fit error (%)")
+    } else {
+        (Figure::Error(Quantity::Position), "position error (m)")
+    };
+    let mut header = vec![measure];
     header.extend(&names);
     let mut table = table(&header);
     for reproduction in reproductions {
         let mut row = vec![reproduction.choices.describe()];
         for name in &names {
             let filter = reproduction.filters.iter().find(|f| f.name.starts_with(name));
-            let error = filter.and_then(|f| reproduction.error(&f.name, Quantity::Position));
+            let error = filter.and_then(|f| reproduction.figure(&f.name, of));
             let failed = filter.map_or(0, |f| f.failures.len());
             let mut cell = error.map_or_else(|| "—".to_owned(), |error| figure(error.value));
             if failed > 0 {

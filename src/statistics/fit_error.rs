@@ -83,7 +83,7 @@ pub fn position_fit_error(form: FitForm, errors: [&[f64]; 2], truth: [&[f64]; 2]
         // Both coordinates in one list.
         FitForm::JointNorm => percentage_fit_error(&errors.concat(), &truth.concat()),
         FitForm::RootMeanSquare => norm(&[of(0), of(1)]) / 2.0_f64.sqrt(),
-        FitForm::Mean => (of(0) + of(1)) / 2.0,
+        FitForm::Mean => f64::midpoint(of(0), of(1)),
         FitForm::Sum => of(0) + of(1),
     }
 }

@@ -3,12 +3,11 @@
 //! After this file the reader knows how a bearing goes wrong by its axes, its sign, its unit and its cut at ±π.
 
 use super::super::setup::Setup;
-use super::{draws_points, used, weights};
-use crate::filter::cubature;
+use super::{draws_points, weights};
 use crate::imm::{Problem, Step};
 use crate::model::{Measurement, PolarComponent};
 use crate::number::Real;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SVector;
 
 /// Applies a variant of range and bearing; whether it is one.
 pub(super) fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
@@ -86,34 +85,15 @@ fn of_wrapping<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Se
         "bearings-never-wrapped" => (true, true, true),
         _ => return false,
     };
-    // ẑ = Σₛ wₛ Zₛ
     if mean && points {
-        equations.predicted_measurement =
-            |problem, _, now, j| cubature::weighted_mean(weights(problem).0, &now.measured_points[j]);
+        *equations = equations.clone().with_plain_mean();
     }
-    // Zₛ − ẑ as a number
     if deviations && points {
-        equations.innovation_covariance = |problem, _, now, j| {
-            let (values, mean) = (&now.measured_points[j], &now.predicted_measurements[j]);
-            cubature::weighted_covariance(weights(problem).1, values, mean, &problem.measurement_noise)
-        };
-        equations.cross_covariance = |problem, _, now, j| {
-            cubature::cross_covariance(
-                &Measurement::Linear(SMatrix::zeros()), // which has no angles
-                weights(problem).1,
-                &now.predicted_points[j],
-                &now.predicted[j].mean,
-                &now.measured_points[j],
-                &now.predicted_measurements[j],
-            )
-        };
+        *equations = equations.clone().with_plain_deviations();
     }
-    // z − ẑ as a number
-    if innovation {
-        equations.innovation = |problem, _, now, j| match used(problem, now) {
-            Some(z) => z - &now.predicted_measurements[j],
-            None => SVector::from_fn(|_, _| T::undecided()),
-        };
+    // A converted measurement has no bearing any more.
+    if innovation && !setup.problem.measurement.is_converted() {
+        *equations = equations.clone().with_plain_innovation();
     }
     true
 }

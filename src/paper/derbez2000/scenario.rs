@@ -196,6 +196,7 @@ pub fn track(scenario: &Scenario, contestant: &Contestant, seen: &[Seen]) -> Run
         nees: Vec::with_capacity(seen.len()),
         nis: Vec::with_capacity(seen.len()),
         mode_probabilities: Vec::with_capacity(seen.len()),
+        fit_error: None,
         failure: None,
         time: Duration::ZERO,
     };

@@ -1,0 +1,303 @@
+//! Scenario 3: the filters' noise parameters, varied one at a time.
+//!
+//! After this file the reader knows the settings of table 3, what is asked of the runs at each, and how a sweep goes on where another was
+//! interrupted. The truth and the measurements of a run depend on the seed and the run alone: all settings and all filters see the same,
+//! so that a difference between filters is that of the runs, one by one. A run is called divergent when its percentage fit error exceeds
+//! [`DIVERGENT_FIT_ERROR`], and its measured bearings jump when two that follow each other differ by more than π.
+
+use super::contestants::{Bearings, Setup};
+use super::journal::{BadJournal, Header, Journal};
+use super::scenario::Scenario;
+use super::truth::bearing_jumps;
+use super::{DEGREE, DIVERGENT_FIT_ERROR, SWEPT_BEARING_DEGREES, SWEPT_NOISE_DENSITIES};
+use crate::paper::monte_carlo::Progress;
+use crate::paper::specification::{Choices, InvalidChoice};
+use crate::statistics::Estimate;
+use crate::statistics::estimate::mean;
+use rayon::prelude::*;
+use serde::Serialize;
+use std::path::Path;
+
+/// A trajectory of the paper.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Trajectory {
+    /// Without manoeuvres.
+    Straight,
+    /// With manoeuvres.
+    Manoeuvring,
+}
+
+impl Trajectory {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Straight, Self::Manoeuvring];
+
+    /// The name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Straight => "straight",
+            Self::Manoeuvring => "manoeuvring",
+        }
+    }
+}
+
+/// Which of the filters' noise parameters is varied; the other is the truth's.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Parameter {
+    /// q of both modes.
+    NoiseDensity,
+    /// σ_θ in degrees.
+    BearingDegrees,
+}
+
+impl Parameter {
+    /// Both, in the order of table 3.
+    pub const ALL: [Self; 2] = [Self::NoiseDensity, Self::BearingDegrees];
+
+    /// The name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::NoiseDensity => "noise-density",
+            Self::BearingDegrees => "bearing-degrees",
+        }
+    }
+
+    /// The values of table 3.
+    pub fn values(self) -> Vec<f64> {
+        let [_, last, interval] = match self {
+            Self::NoiseDensity => SWEPT_NOISE_DENSITIES,
+            Self::BearingDegrees => SWEPT_BEARING_DEGREES,
+        };
+        // Both begin with their interval: whole multiples of it. Quotients of integers are the doubles nearest to the decimals.
+        let count = (last / interval).round();
+        let parts = (1.0 / interval).round();
+        std::iter::successors(Some(1.0), |k| Some(k + 1.0).filter(|next| *next <= count))
+            .map(|k| k / parts)
+            .collect()
+    }
+
+    /// What the filters are told with another value of this parameter.
+    fn set(self, setup: &Setup, value: f64) -> Setup {
+        let mut setup = setup.clone();
+        match self {
+            Self::NoiseDensity => setup.noise_density = value,
+            Self::BearingDegrees => setup.deviations[1] = value * DEGREE,
+        }
+        setup
+    }
+}
+
+/// A setting of the sweep.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Setting {
+    /// The trajectory.
+    pub trajectory: Trajectory,
+    /// What is varied.
+    pub parameter: Parameter,
+    /// Its value, m²/s³ and m²/s⁵, or degrees.
+    pub value: f64,
+}
+
+/// All settings of scenario 3, in the order in which they are run.
+pub fn settings() -> Vec<Setting> {
+    let mut settings = Vec::new();
+    for trajectory in Trajectory::ALL {
+        for parameter in Parameter::ALL {
+            settings.extend(parameter.values().into_iter().map(|value| Setting {
+                trajectory,
+                parameter,
+                value,
+            }));
+        }
+    }
+    settings
+}
+
+/// The filters of the sweep: the paper's two, and the second with bearings that are never wrapped.
+pub const FILTERS: [&str; 3] = ["IMM-CMKF", "IMM-UKF", "IMM-UKF, never wrapped"];
+
+/// What the runs of one filter show at one setting.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Fit {
+    /// The mean of the runs' percentage fit errors, with its standard error, %.
+    pub mean: Estimate,
+    /// Their median, %.
+    pub median: f64,
+    /// The divergent runs.
+    pub divergent: usize,
+    /// Those of them whose measured bearings jump.
+    pub divergent_with_jump: usize,
+    /// The runs in which a step could not be computed; they are left out of all other figures.
+    pub failed: usize,
+}
+
+/// What the runs show at one setting.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Point {
+    /// The runs whose measured bearings jump.
+    pub runs_with_jump: usize,
+    /// Of each of [`FILTERS`].
+    pub fits: [Fit; 3],
+    /// IMM-UKF less IMM-CMKF, the mean of the runs' differences, %.
+    pub unscented_less_converted: Estimate,
+    /// IMM-UKF never wrapped less IMM-UKF, %.
+    pub plain_less_wrapped: Estimate,
+}
+
+/// One run: whether its measured bearings jump, and each filter's fit error; none where a step could not be computed.
+type Outcome = (bool, [Option<f64>; 3]);
+
+/// The runs of a scenario with [`FILTERS`] in the place of its own filters.
+pub fn point(scenario: &Scenario, runs: usize, seed: u64, progress: Progress) -> Point {
+    let setup = &scenario.setup;
+    let contestants = [
+        setup.converted(),
+        setup.unscented(Bearings::Wrapped),
+        setup.unscented(Bearings::Plain),
+    ];
+    let outcomes: Vec<Outcome> = (0..runs)
+        .into_par_iter()
+        .map(|run| {
+            let draw = scenario.trajectory.draw(run, seed);
+            let fits = contestants
+                .each_ref()
+                .map(|contestant| scenario.track(contestant, &draw).fit_error);
+            progress();
+            (bearing_jumps(&draw.measurements) > 0, fits)
+        })
+        .collect();
+    Point {
+        runs_with_jump: outcomes.iter().filter(|(jumps, _)| *jumps).count(),
+        fits: [0, 1, 2].map(|filter| fit(&outcomes, filter)),
+        unscented_less_converted: difference(&outcomes, 1, 0),
+        plain_less_wrapped: difference(&outcomes, 2, 1),
+    }
+}
+
+/// What the outcomes show of one filter.
+fn fit(outcomes: &[Outcome], filter: usize) -> Fit {
+    let completed = outcomes
+        .iter()
+        .filter_map(|(jumps, fits)| Some((*jumps, fits[filter]?)));
+    let fits: Vec<f64> = completed.clone().map(|(_, fit)| fit).collect();
+    let divergent = || completed.clone().filter(|(_, fit)| *fit > DIVERGENT_FIT_ERROR);
+    Fit {
+        mean: mean(&fits),
+        median: median(&fits),
+        divergent: divergent().count(),
+        divergent_with_jump: divergent().filter(|(jumps, _)| *jumps).count(),
+        failed: outcomes.len() - fits.len(),
+    }
+}
+
+/// The mean over runs of one filter's fit error less another's.
+fn difference(outcomes: &[Outcome], a: usize, b: usize) -> Estimate {
+    let of_run = |(_, fits): &Outcome| Some(fits[a]? - fits[b]?);
+    mean(&outcomes.iter().filter_map(of_run).collect::<Vec<f64>>())
+}
+
+/// The value in the middle, or the mean of the two there.
+fn median(values: &[f64]) -> f64 {
+    let mut values = values.to_vec();
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    match values.len() {
+        0 => f64::NAN,
+        odd if odd % 2 == 1 => values[middle],
+        _ => f64::midpoint(values[middle - 1], values[middle]),
+    }
+}
+
+/// The sweep under some choices.
+#[derive(Debug, Clone)]
+pub struct Sweep {
+    /// The choices that differ from the defaults.
+    pub choices: Choices,
+    /// The number of runs at each setting.
+    pub runs: usize,
+    /// The seed of the random numbers.
+    pub seed: u64,
+    straight: Scenario,
+    manoeuvring: Scenario,
+}
+
+impl Sweep {
+    /// A sweep; the choices are those of the paper's simulations but for `scenario` and `wrapping`, of which it runs all.
+    ///
+    /// # Errors
+    ///
+    /// [`InvalidChoice`] for a parameter or an alternative that there is not, and for a choice of these two.
+    pub fn new(choices: &Choices, runs: usize, seed: u64) -> Result<Self, InvalidChoice> {
+        if let Some(parameter) = ["scenario", "wrapping"]
+            .into_iter()
+            .find(|name| choices.chosen(name).is_some())
+        {
+            return Err(InvalidChoice::Swept {
+                parameter: parameter.to_owned(),
+            });
+        }
+        let of = |scenario: &str| super::scenario(&choices.clone().with("scenario", scenario));
+        Ok(Self {
+            choices: choices.clone(),
+            runs,
+            seed,
+            straight: of("matched-straight")?,
+            manoeuvring: of("matched-manoeuvring")?,
+        })
+    }
+
+    /// The scenario of a setting.
+    fn scenario(&self, setting: &Setting) -> Scenario {
+        let scenario = match setting.trajectory {
+            Trajectory::Straight => &self.straight,
+            Trajectory::Manoeuvring => &self.manoeuvring,
+        };
+        Scenario {
+            setup: setting.parameter.set(&scenario.setup, setting.value),
+            ..scenario.clone()
+        }
+    }
+
+    /// The runs at one setting.
+    pub fn point(&self, setting: &Setting, progress: Progress) -> Point {
+        point(&self.scenario(setting), self.runs, self.seed, progress)
+    }
+
+    /// What a journal of this sweep is told apart by.
+    pub fn header(&self) -> Header {
+        Header {
+            seed: self.seed,
+            runs: self.runs,
+            choices: self.choices.describe(),
+        }
+    }
+
+    /// All settings, those that the journal has not; each is in the journal as soon as it is finished.
+    ///
+    /// # Errors
+    ///
+    /// [`BadJournal`] when the file cannot be read or written, or is the journal of another sweep.
+    pub fn run(&self, journal: &Path, progress: Progress) -> Result<Vec<(Setting, Point)>, BadJournal> {
+        let settings = settings();
+        let (mut journal, mut points) = Journal::open(journal, &self.header(), &settings)?;
+        // What is already there has been run.
+        for _ in 0..points.len() * self.runs {
+            progress();
+        }
+        for setting in &settings[points.len()..] {
+            let point = self.point(setting, progress);
+            journal.append(setting, &point)?;
+            points.push(point);
+        }
+        Ok(settings.into_iter().zip(points).collect())
+    }
+
+    /// All settings, without a journal.
+    pub fn run_without_journal(&self, progress: Progress) -> Vec<(Setting, Point)> {
+        let settings = settings().into_iter();
+        settings
+            .map(|setting| (setting, self.point(&setting, progress)))
+            .collect()
+    }
+}

@@ -1,0 +1,660 @@
+//! Goal: the simulations of sustika2015 are what they say, and a sweep that is interrupted ends as one that is not.
+//!
+//! Method: laws of the truth, of what is seen of it and of the filters' parts; statistics of many runs with a fixed seed and a stated
+//! probability of a false alarm; and journals that are cut at every byte, continued, exchanged and spoilt. Kind of evidence: property, and
+//! statistical where it is said. What the simulations show is `tests/scenario.rs` and the claims.
+
+use immaculate::gaussian::Gaussian;
+use immaculate::imm::{Equations, Imm, Initial, Problem};
+use immaculate::model::motion::Mode;
+use immaculate::model::wiener::{
+    constant_acceleration_in_the_plane, constant_velocity_in_the_plane, velocity_noise_in_the_plane,
+};
+use immaculate::model::{Measurement, PolarComponent};
+use immaculate::paper::specification::{Choices, InvalidChoice};
+use immaculate::paper::sustika2015::contestants::Bearings;
+use immaculate::paper::sustika2015::journal::{BadJournal, Header, Journal, columns, line};
+use immaculate::paper::sustika2015::scenario::Scenario;
+use immaculate::paper::sustika2015::sweep::{
+    self, Fit, Parameter, Point, Setting, Sweep, Trajectory as Swept, settings,
+};
+use immaculate::paper::sustika2015::truth::{Motion, Noise, Trajectory, bearing_jumps};
+use immaculate::paper::sustika2015::{
+    DEGREE, DURATION, INITIAL_POSITION, INITIAL_VELOCITY, MANOEUVRING_SECONDS, MEASUREMENT_DEVIATIONS, NOISE_DENSITY,
+    TOOLBOX_SECONDS, scenario,
+};
+use immaculate::rule::unscented::unscented_in;
+use immaculate::statistics::Estimate;
+use immaculate::statistics::fit_error::{FitForm, position_fit_error};
+use nalgebra::{Matrix4, Matrix6, SMatrix, Vector2, Vector4, Vector6};
+use std::f64::consts::PI;
+use std::path::{Path, PathBuf};
+
+// The truth
+
+#[test]
+fn a_trajectory_without_noise_is_a_straight_line_at_constant_speed() {
+    for manoeuvres in [&[][..], &TOOLBOX_SECONDS] {
+        let truth = Trajectory::new(manoeuvres, Noise::Free).draw(3, 1).truth;
+        assert_eq!(truth.len(), DURATION);
+        for (k, state) in truth.iter().enumerate() {
+            // Whole numbers: nothing is rounded.
+            let along = |axis: usize| INITIAL_POSITION[axis] + k as f64 * INITIAL_VELOCITY[axis];
+            assert_eq!(
+                *state,
+                Vector6::new(along(0), along(1), INITIAL_VELOCITY[0], INITIAL_VELOCITY[1], 0.0, 0.0)
+            );
+        }
+    }
+}
+
+#[test]
+fn an_acceleration_lasts_as_long_as_its_manoeuvre() {
+    let trajectory = Trajectory::new(&TOOLBOX_SECONDS, Noise::EachRun);
+    for run in 0..20 {
+        let truth = trajectory.draw(run, 1).truth;
+        // The state at k seconds is the one with the index k − 1.
+        for (second, state) in (1..).zip(&truth) {
+            let manoeuvres = (51..=70).contains(&second) || (121..=150).contains(&second);
+            assert_eq!(
+                state.fixed_rows::<2>(4).norm() > 0.0,
+                manoeuvres,
+                "run {run}, {second} s"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_printed_manoeuvres_are_the_times_of_constant_velocity_of_the_toolbox() {
+    let manoeuvres = |seconds: &[[usize; 2]]| {
+        let motions = Trajectory::new(seconds, Noise::Free).motions;
+        (2..)
+            .zip(motions)
+            .filter(|(_, motion)| *motion == Motion::Manoeuvre)
+            .map(|(second, _)| second)
+            .collect::<Vec<usize>>()
+    };
+    let (printed, toolbox) = (manoeuvres(&MANOEUVRING_SECONDS), manoeuvres(&TOOLBOX_SECONDS));
+    assert!(printed.iter().all(|second| !toolbox.contains(second)));
+    // Together they are everything but the end.
+    let rest: Vec<usize> = (2..=DURATION)
+        .filter(|s| !printed.contains(s) && !toolbox.contains(s))
+        .collect();
+    assert_eq!(rest, (151..=200).collect::<Vec<_>>());
+}
+
+#[test]
+fn the_noises_are_those_of_table_1() {
+    // Statistical. Mean squares of n standard Gaussian numbers have the standard deviation √(2/n); seven of these are exceeded with a
+    // probability of 3·10⁻¹² a comparison.
+    let mut squares: [Vec<f64>; 4] = Default::default();
+    let trajectory = Trajectory::new(&TOOLBOX_SECONDS, Noise::EachRun);
+    for run in 0..200 {
+        let draw = trajectory.draw(run, 1);
+        for (motion, pair) in trajectory.motions.iter().zip(draw.truth.windows(2)) {
+            let transition = match motion {
+                Motion::Straight => constant_velocity_in_the_plane(&1.0),
+                Motion::Manoeuvre => constant_acceleration_in_the_plane(&1.0),
+            };
+            let noise = pair[1] - transition * pair[0];
+            // The last derivative that moves has the variance q T.
+            let (kind, entry) = match motion {
+                Motion::Straight => (0, 2),
+                Motion::Manoeuvre => (1, 4),
+            };
+            squares[kind].extend([0, 1].map(|c| noise[entry + c] * noise[entry + c] / NOISE_DENSITY));
+        }
+        for (z, residual) in draw.measurements.iter().zip(residuals(&draw.measurements, &draw.truth)) {
+            assert!(-PI < z[1] && z[1] <= PI);
+            for component in 0..2 {
+                let standard = residual[component] / MEASUREMENT_DEVIATIONS[component];
+                squares[2 + component].push(standard * standard);
+            }
+        }
+    }
+    for squares in squares {
+        let count = squares.len() as f64;
+        let mean = squares.iter().sum::<f64>() / count;
+        assert!((mean - 1.0).abs() < 7.0 * (2.0 / count).sqrt(), "{mean} of {count}");
+        // A noise of a tenth more would be noticed.
+        assert!((1.21 * mean - 1.0).abs() > 7.0 * (2.0 / count).sqrt());
+    }
+}
+
+/// Measured less true range and bearing, the bearing on the circle.
+fn residuals(measurements: &[Vector2<f64>], truth: &[Vector6<f64>]) -> Vec<Vector2<f64>> {
+    let residual = |(z, state): (&Vector2<f64>, &Vector6<f64>)| {
+        let angle = z[1] - state[1].atan2(state[0]);
+        Vector2::new(
+            z[0] - state[0].hypot(state[1]),
+            angle - (angle / (2.0 * PI)).round() * 2.0 * PI,
+        )
+    };
+    measurements.iter().zip(truth).map(residual).collect()
+}
+
+#[test]
+fn the_noise_of_the_measurements_is_that_of_the_run_whatever_the_trajectory() {
+    let seen = |manoeuvres: &[[usize; 2]], noise: Noise, run: usize| {
+        let draw = Trajectory::new(manoeuvres, noise).draw(run, 1);
+        (residuals(&draw.measurements, &draw.truth), draw)
+    };
+    let (reference, straight) = seen(&[], Noise::EachRun, 4);
+    for (manoeuvres, noise) in [
+        (&TOOLBOX_SECONDS[..], Noise::EachRun),
+        (&[], Noise::OneTrajectory),
+        (&[], Noise::Free),
+    ] {
+        let (residuals, other) = seen(manoeuvres, noise, 4);
+        assert_ne!(other.truth, straight.truth);
+        // Ranges of some 10⁴ m at the most, whose doubles are 2·10⁻¹² m apart, added and subtracted.
+        let largest = residuals
+            .iter()
+            .zip(&reference)
+            .map(|(a, b)| (a - b).amax())
+            .fold(0.0, f64::max);
+        assert!(largest < 1e-11, "{largest}");
+    }
+    // One trajectory: the same truth in every run, that of the first, with other noise on the measurements.
+    let (first, fifth) = (
+        seen(&[], Noise::OneTrajectory, 0).1,
+        seen(&[], Noise::OneTrajectory, 4).1,
+    );
+    assert_eq!(first.truth, fifth.truth);
+    assert_eq!(first, seen(&[], Noise::EachRun, 0).1);
+    assert_ne!(first.measurements, fifth.measurements);
+    // Other seeds and other runs are other draws.
+    let trajectory = Trajectory::new(&[], Noise::EachRun);
+    assert_ne!(trajectory.draw(0, 1), trajectory.draw(0, 2));
+    assert_ne!(trajectory.draw(0, 1).truth, trajectory.draw(1, 1).truth);
+}
+
+#[test]
+fn a_bearing_jumps_where_it_passes_the_negative_x_axis() {
+    let degrees = |values: &[f64]| values.iter().map(|v| Vector2::new(1.0, v * DEGREE)).collect::<Vec<_>>();
+    assert_eq!(bearing_jumps(&degrees(&[170.0, 179.0, -179.0, -170.0])), 1);
+    assert_eq!(bearing_jumps(&degrees(&[179.0, -179.0, 179.0])), 2);
+    assert_eq!(bearing_jumps(&degrees(&[1.0, -1.0, 90.0, -89.0])), 0);
+    assert_eq!(bearing_jumps(&degrees(&[5.0])), 0);
+}
+
+// The filters
+
+#[test]
+fn bearings_as_plain_numbers_differ_only_where_the_measured_bearing_jumps() {
+    let scenario = of("matched-manoeuvring");
+    let (wrapped, plain) = (
+        scenario.setup.unscented(Bearings::Wrapped),
+        scenario.setup.unscented(Bearings::Plain),
+    );
+    let (mut with, mut without) = (0, 0);
+    for run in 0..50 {
+        let draw = scenario.trajectory.draw(run, 1);
+        let errors = [&wrapped, &plain].map(|filter| scenario.track(filter, &draw).errors);
+        let largest = errors[0]
+            .iter()
+            .zip(&errors[1])
+            .map(|(a, b)| (a - b).amax())
+            .fold(0.0, f64::max);
+        if bearing_jumps(&draw.measurements) > 0 {
+            // From metres, where the filter is lucky, to kilometres.
+            assert!(largest > 1.0, "run {run}: {largest} m");
+            with += 1;
+        } else if draw.measurements.iter().all(|z| z[1].abs() < 150.0 * DEGREE) {
+            // The points' bearings are averaged in another order: roundings of some radians at some kilometres, over 199 steps.
+            assert!(largest < 1e-6, "run {run}: {largest} m");
+            without += 1;
+        }
+    }
+    assert!(with >= 3 && without >= 30, "{with} and {without} runs");
+}
+
+#[test]
+fn the_points_of_kappa_three_minus_n_are_those_of_the_four_states_that_move() {
+    // One mode of constant velocity, in four states and embedded in six, on the same measurements. The accelerations have no variance, so
+    // that their points are at the centre, and with n + κ = 3 in both the others are where they were.
+    let draw = of("matched-straight").trajectory.draw(0, 1);
+    let largest_difference = |kappas: [f64; 2]| {
+        let mut six = {
+            let scenario = of("matched-straight");
+            let contestant = scenario.setup.unscented(Bearings::Wrapped);
+            let initial = scenario.setup.initial(&draw.measurements[0]);
+            let problem = Problem {
+                modes: contestant.problem.modes[..1].to_vec(),
+                transition: vec![vec![1.0]],
+                rule: unscented_in(&1.0, &0.0, &kappas[0]).ok(),
+                ..contestant.problem
+            };
+            let initial = Initial {
+                modes: initial.modes[..1].to_vec(),
+                mode_probabilities: vec![1.0],
+            };
+            Imm::new(problem, contestant.equations, &initial).unwrap()
+        };
+        let start = &six.current().updated[0].clone();
+        let mut four = in_four_states(start, kappas[1]);
+        let mut largest = 0.0_f64;
+        for z in &draw.measurements[1..] {
+            let embedded = six.step(Some(z)).unwrap().combined.mean;
+            let own = four.step(Some(z)).unwrap().combined.mean;
+            largest = largest.max((Vector2::new(embedded[0], embedded[1]) - Vector2::new(own[0], own[1])).amax());
+        }
+        largest
+    };
+    // Roundings of sums of points at some kilometres, 199 times.
+    let same = largest_difference([-3.0, -1.0]);
+    assert!(same < 1e-8, "{same}");
+    let other = largest_difference([0.0, 0.0]);
+    assert!(other > 1e-4, "{other}");
+}
+
+/// The unscented filter of constant velocity with the state [x, y, ẋ, ẏ], from an embedded estimate. The order matters: another one has
+/// another square root, and so other points.
+fn in_four_states(start: &Gaussian<f64, 6>, kappa: f64) -> Imm<f64, 4, 2> {
+    let first_four = |matrix: Matrix6<f64>| Matrix4::from_fn(|row, column| matrix[(row, column)]);
+    let problem = Problem {
+        modes: vec![Mode {
+            name: "constant velocity".to_owned(),
+            transition: first_four(constant_velocity_in_the_plane(&1.0)),
+            noise: first_four(velocity_noise_in_the_plane(&NOISE_DENSITY, &1.0)),
+        }],
+        transition: vec![vec![1.0]],
+        measurement: Measurement::Polar {
+            components: [PolarComponent::Range, PolarComponent::Bearing],
+            position: [0, 1],
+            sensor: [0.0, 0.0],
+        },
+        measurement_noise: SMatrix::from_diagonal(&Vector2::from(MEASUREMENT_DEVIATIONS.map(|d| d * d))),
+        rule: unscented_in(&1.0, &0.0, &kappa).ok(),
+        fixed_gains: None,
+    };
+    let initial = Initial {
+        modes: vec![Gaussian {
+            mean: Vector4::from_fn(|row, _| start.mean[row]),
+            covariance: first_four(start.covariance),
+        }],
+        mode_probabilities: vec![1.0],
+    };
+    Imm::new(problem, Equations::cubature(), &initial).unwrap()
+}
+
+#[test]
+fn a_run_begins_at_the_first_measurement_and_is_measured_from_the_first_step_that_is_filtered() {
+    for (alternative, filtered) in [("initiation", 199), ("filtered", 200)] {
+        let scenario = scenario(&Choices::of("first-measurement", alternative)).unwrap();
+        let draw = scenario.trajectory.draw(0, 1);
+        let run = scenario.track(&scenario.contestants[0], &draw);
+        assert_eq!(run.errors.len(), filtered);
+        let truth = &draw.truth[DURATION - filtered..];
+        let column = |of: &dyn Fn(usize) -> f64| (0..filtered).map(of).collect::<Vec<f64>>();
+        let errors = [column(&|k| run.errors[k][0]), column(&|k| run.errors[k][2])];
+        let places = [column(&|k| truth[k][0]), column(&|k| truth[k][1])];
+        let expected = position_fit_error(
+            FitForm::RootSumSquare,
+            [&errors[0], &errors[1]],
+            [&places[0], &places[1]],
+        );
+        assert_eq!(run.fit_error, Some(expected));
+        // One point: where it was seen, and not moving; constant velocity knows that it has no acceleration.
+        let initial = scenario.setup.initial(&draw.measurements[0]);
+        let seen = draw.measurements[0];
+        let expected = Vector6::new(seen[0] * seen[1].cos(), seen[0] * seen[1].sin(), 0.0, 0.0, 0.0, 0.0);
+        // The platform's sine and cosine may differ in the last bit.
+        assert!((initial.modes[0].mean - expected).amax() < 1e-9);
+        assert_eq!(
+            initial.modes[0].covariance.fixed_rows::<2>(4),
+            SMatrix::<f64, 2, 6>::zeros()
+        );
+        assert_eq!(initial.modes[1].covariance[(4, 4)].to_bits(), 1.0_f64.to_bits());
+    }
+}
+
+#[test]
+fn every_form_of_the_fit_error_is_of_the_same_runs() {
+    let fit = |form: &str| {
+        let scenario = scenario(&Choices::of("fit-error", form)).unwrap();
+        let draw = scenario.trajectory.draw(0, 1);
+        scenario.track(&scenario.contestants[1], &draw).fit_error.unwrap()
+    };
+    let (rss, rms, mean, sum) = (fit("root-sum-square"), fit("root-mean-square"), fit("mean"), fit("sum"));
+    // A root and a product, each rounded once.
+    assert!((rss / rms - 2.0_f64.sqrt()).abs() < 1e-15 * 4.0);
+    assert_eq!(sum.to_bits(), (2.0 * mean).to_bits());
+    assert!(mean <= rms && rms < rss && rss <= sum && fit("joint-norm") < rss);
+}
+
+// The sweep
+
+#[test]
+fn the_settings_are_those_of_table_3() {
+    let written = |decimals: &[String]| decimals.iter().map(|text| text.parse().unwrap()).collect::<Vec<f64>>();
+    let densities: Vec<String> = (1..=100).map(|k| format!("{}.{:02}", k / 100, k % 100)).collect();
+    let degrees: Vec<String> = (1..=40).map(|k| format!("{}.{}", k / 10, k % 10)).collect();
+    assert_eq!(Parameter::NoiseDensity.values(), written(&densities));
+    assert_eq!(Parameter::BearingDegrees.values(), written(&degrees));
+    assert_eq!(settings().len(), 2 * (100 + 40));
+}
+
+#[test]
+fn a_setting_with_the_parameters_of_the_truth_is_the_first_scenario() {
+    let sweep = Sweep::new(&Choices::default(), 3, 1).unwrap();
+    for (trajectory, name) in [
+        (Swept::Straight, "matched-straight"),
+        (Swept::Manoeuvring, "matched-manoeuvring"),
+    ] {
+        let first = sweep::point(&of(name), 3, 1, &|| ());
+        for (parameter, value) in [
+            (Parameter::NoiseDensity, NOISE_DENSITY),
+            (Parameter::BearingDegrees, 1.0),
+        ] {
+            let setting = Setting {
+                trajectory,
+                parameter,
+                value,
+            };
+            assert!(settings().contains(&setting));
+            assert_eq!(sweep.point(&setting, &|| ()), first);
+            let other = Setting {
+                value: 2.0 * value,
+                ..setting
+            };
+            assert_ne!(sweep.point(&other, &|| ()), first);
+        }
+        // And the fit errors are those of the scenario's own filters.
+        let scenario = of(name);
+        let fits = (0..3).map(|run| {
+            let draw = scenario.trajectory.draw(run, 1);
+            scenario.track(&scenario.contestants[1], &draw).fit_error.unwrap()
+        });
+        assert_eq!(first.fits[1].mean.value.to_bits(), (fits.sum::<f64>() / 3.0).to_bits());
+    }
+}
+
+#[test]
+fn what_a_point_counts_is_what_its_runs_show() {
+    const RUNS: usize = 21;
+    let scenario = scenario(&Choices::of("scenario", "matched-manoeuvring").with("window", "printed")).unwrap();
+    let point = sweep::point(&scenario, RUNS, 1, &|| ());
+    let plain = scenario.setup.unscented(Bearings::Plain);
+    let outcomes: Vec<(bool, f64)> = (0..RUNS)
+        .map(|run| {
+            let draw = scenario.trajectory.draw(run, 1);
+            let jumps = bearing_jumps(&draw.measurements) > 0;
+            (jumps, scenario.track(&plain, &draw).fit_error.unwrap())
+        })
+        .collect();
+    let count = |of: &dyn Fn(&(bool, f64)) -> bool| outcomes.iter().filter(|outcome| of(outcome)).count();
+    let fit = &point.fits[2];
+    assert_eq!(point.runs_with_jump, count(&|outcome| outcome.0));
+    assert_eq!(fit.divergent, count(&|outcome| outcome.1 > 20.0));
+    assert_eq!(fit.divergent_with_jump, count(&|outcome| outcome.0 && outcome.1 > 20.0));
+    assert!(fit.divergent > 0 && fit.divergent < point.runs_with_jump && point.runs_with_jump < RUNS);
+    assert_eq!((fit.failed, point.fits[1].divergent), (0, 0));
+    let mut fits: Vec<f64> = outcomes.iter().map(|outcome| outcome.1).collect();
+    fits.sort_by(f64::total_cmp);
+    assert_eq!(fit.median.to_bits(), fits[RUNS / 2].to_bits());
+    // The differences of the means are the means of the differences, but for the order of 21 sums.
+    let [converted, wrapped, plain] = point.fits.map(|fit| fit.mean.value);
+    assert!((point.plain_less_wrapped.value - (plain - wrapped)).abs() < 1e-12 * plain);
+    assert!((point.unscented_less_converted.value - (wrapped - converted)).abs() < 1e-12 * plain);
+}
+
+#[test]
+fn a_sweep_runs_all_trajectories_and_both_kinds_of_bearings() {
+    for parameter in ["scenario", "wrapping"] {
+        let refused = Sweep::new(&Choices::of(parameter, "never"), 2, 1).unwrap_err();
+        assert!(
+            matches!(&refused, InvalidChoice::Swept { parameter: named } if named == parameter),
+            "{refused}"
+        );
+    }
+    assert!(Sweep::new(&Choices::of("window", "printed"), 2, 1).is_ok());
+    assert!(Sweep::new(&Choices::of("window", "none"), 2, 1).is_err());
+}
+
+// The journal
+
+#[test]
+fn a_journal_that_is_cut_anywhere_is_continued_to_the_same_bytes() {
+    let (path, settings, points) = (file("cut"), few_settings(), few_points());
+    write(&path, &settings, &points);
+    let whole = std::fs::read(&path).unwrap();
+    for length in 0..=whole.len() {
+        std::fs::write(&path, &whole[..length]).unwrap();
+        let (mut journal, found) = Journal::open(&path, &header(), &settings).unwrap();
+        // Whole lines are kept, bit for bit, and a torn one is dropped.
+        let lines = whole[..length]
+            .split_inclusive(|byte| *byte == b'\n')
+            .filter(|line| line.ends_with(b"\n"))
+            .count();
+        assert_eq!(found.len(), lines.saturating_sub(2), "cut at {length}");
+        for (a, b) in found.iter().zip(&points) {
+            assert_eq!(bits(a), bits(b));
+        }
+        for (setting, point) in settings.iter().zip(&points).skip(found.len()) {
+            journal.append(setting, point).unwrap();
+        }
+        assert!(std::fs::read(&path).unwrap() == whole, "cut at {length}");
+    }
+}
+
+#[test]
+fn a_point_is_in_the_journal_as_soon_as_it_is_finished() {
+    let (path, settings, points) = (file("soon"), few_settings(), few_points());
+    let (mut journal, _) = Journal::open(&path, &header(), &settings).unwrap();
+    for (count, (setting, point)) in settings.iter().zip(&points).enumerate() {
+        assert_eq!(std::fs::read_to_string(&path).unwrap().lines().count(), 2 + count);
+        journal.append(setting, point).unwrap();
+        assert!(
+            std::fs::read_to_string(&path)
+                .unwrap()
+                .ends_with(&format!("{}\n", line(setting, point)))
+        );
+    }
+}
+
+#[test]
+fn a_sweep_that_was_interrupted_has_the_same_result() {
+    let sweep = Sweep::new(&Choices::default(), 2, 7).unwrap();
+    let (path, other) = (file("whole"), file("interrupted"));
+    let whole = sweep.run(&path, &|| ()).unwrap();
+    assert_eq!(whole.len(), 280);
+    let bytes = std::fs::read(&path).unwrap();
+    // In the middle of a line, somewhere after the two hundredth setting.
+    let cut = bytes
+        .iter()
+        .enumerate()
+        .filter(|(_, byte)| **byte == b'\n')
+        .nth(202)
+        .unwrap()
+        .0
+        + 40;
+    std::fs::write(&other, &bytes[..cut]).unwrap();
+    let steps = std::sync::atomic::AtomicUsize::new(0);
+    let count = || {
+        steps.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+    };
+    let continued = sweep.run(&other, &count).unwrap();
+    assert_eq!(continued, whole);
+    assert!(std::fs::read(&other).unwrap() == bytes, "the journals differ");
+    assert_eq!(steps.into_inner(), 2 * 280, "progress counts what was already there");
+    // Finished: nothing is run and nothing is written.
+    assert_eq!(sweep.run(&other, &|| ()).unwrap(), whole);
+    assert!(std::fs::read(&other).unwrap() == bytes, "the journals differ");
+    assert_eq!(sweep.run_without_journal(&|| ())[..3], whole[..3]);
+}
+
+#[test]
+fn the_journal_of_another_sweep_is_refused_by_name() {
+    let (path, settings) = (file("other"), few_settings());
+    write(&path, &settings, &few_points());
+    let before = std::fs::read(&path).unwrap();
+    let others = [
+        (Header { seed: 2, ..header() }, "of seed 1, and the sweep is of seed 2"),
+        (
+            Header { runs: 51, ..header() },
+            "of runs 50, and the sweep is of runs 51",
+        ),
+        (
+            Header {
+                choices: "window=printed".to_owned(),
+                ..header()
+            },
+            "of choices defaults, and the sweep is of choices window=printed",
+        ),
+    ];
+    for (other, words) in others {
+        let sentence = Journal::open(&path, &other, &settings).unwrap_err().to_string();
+        assert!(
+            sentence.starts_with(&path.display().to_string()) && sentence.contains(words),
+            "{sentence}"
+        );
+    }
+    assert_eq!(std::fs::read(&path).unwrap(), before, "a refused file is left as it is");
+}
+
+#[test]
+fn what_is_no_journal_is_refused_and_left_alone() {
+    let (path, settings, points) = (file("spoilt"), few_settings(), few_points());
+    write(&path, &settings, &points);
+    let text = std::fs::read_to_string(&path).unwrap();
+    let first = line(&settings[0], &points[0]);
+    let spoilt = [
+        ("a,b\n1,2\n".to_owned(), "this is no journal of a sweep"),
+        (
+            "# immaculate-sweep/2; seed 1; runs 50; choices defaults\n".to_owned(),
+            "this is no journal of a sweep",
+        ),
+        (text.replacen("cmkf_median", "median", 1), "line 2: the columns are"),
+        (
+            text.replacen("straight", "crooked", 1),
+            "line 3: the setting `straight,noise-density,0.01` is expected",
+        ),
+        (
+            text.replacen(&first, &first.replace("0.01", "0.02"), 1),
+            "line 3: the setting",
+        ),
+        (
+            text.replacen(&first, &format!("{first},1"), 1),
+            "line 3: `1` comes after the last column",
+        ),
+        (
+            text.replacen(&first, first.rsplit_once(',').unwrap().0, 1),
+            "line 3: a column is missing",
+        ),
+        (text.replacen(&format!("{first}\n"), "", 1), "line 3: the setting"),
+        (
+            text.replacen(",7,", ",seven,", 1),
+            "line 3: `seven` is not a number of its column",
+        ),
+        (format!("{text}{first}\n"), "there are more lines than settings"),
+    ];
+    for (content, words) in spoilt {
+        std::fs::write(&path, &content).unwrap();
+        let sentence = Journal::open(&path, &header(), &settings).unwrap_err().to_string();
+        assert!(
+            sentence.starts_with(&path.display().to_string()) && sentence.contains(words),
+            "{sentence}"
+        );
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), content);
+    }
+    std::fs::write(&path, [b'#', 0xff, b'\n']).unwrap();
+    assert!(matches!(
+        Journal::open(&path, &header(), &settings),
+        Err(BadJournal::NoJournal { .. })
+    ));
+    let nowhere = path.with_file_name("no such folder").join("journal.csv");
+    assert!(matches!(
+        Journal::open(&nowhere, &header(), &settings),
+        Err(BadJournal::File { .. })
+    ));
+}
+
+#[test]
+fn a_line_has_a_field_for_every_column() {
+    let fields = |text: &str| text.split(',').count();
+    assert_eq!(fields(&columns()), fields(&line(&few_settings()[0], &few_points()[0])));
+}
+
+// How the tests are written
+
+fn of(name: &str) -> Scenario {
+    scenario(&Choices::of("scenario", name)).unwrap()
+}
+
+/// A place for a journal, of one test alone, without a file.
+fn file(name: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("sustika2015-{name}.csv"));
+    let _ = std::fs::remove_file(&path);
+    path
+}
+
+fn header() -> Header {
+    Header {
+        seed: 1,
+        runs: 50,
+        choices: "defaults".to_owned(),
+    }
+}
+
+fn few_settings() -> Vec<Setting> {
+    settings()[..4].to_vec()
+}
+
+/// Points with all kinds of doubles: long ones, subnormal ones, infinite ones, none.
+fn few_points() -> Vec<Point> {
+    let point = |values: [f64; 3]| {
+        let [a, b, c] = values;
+        let fit = Fit {
+            mean: Estimate {
+                value: a,
+                standard_error: b,
+            },
+            median: c,
+            divergent: 3,
+            divergent_with_jump: 2,
+            failed: 1,
+        };
+        Point {
+            runs_with_jump: 7,
+            fits: [fit, Fit { median: b, ..fit }, Fit { divergent: 50, ..fit }],
+            unscented_less_converted: Estimate {
+                value: b,
+                standard_error: c,
+            },
+            plain_less_wrapped: Estimate {
+                value: c,
+                standard_error: a,
+            },
+        }
+    };
+    vec![
+        point([0.1, 1.0 / 3.0, -0.0]),
+        point([f64::NAN, f64::INFINITY, f64::NEG_INFINITY]),
+        point([f64::MIN_POSITIVE / 3.0, f64::MAX, f64::EPSILON]),
+        point([1.705, 2.0_f64.sqrt() * 1e300, -1e-300]),
+    ]
+}
+
+fn write(path: &Path, settings: &[Setting], points: &[Point]) {
+    let (mut journal, found) = Journal::open(path, &header(), settings).unwrap();
+    assert!(found.is_empty());
+    for (setting, point) in settings.iter().zip(points) {
+        journal.append(setting, point).unwrap();
+    }
+}
+
+/// A point to the bit: NaN is equal to itself.
+fn bits(point: &Point) -> Vec<u64> {
+    let of_estimate = |estimate: &Estimate| [estimate.value.to_bits(), estimate.standard_error.to_bits()];
+    let of_fit = |fit: &Fit| {
+        let counts = [fit.divergent, fit.divergent_with_jump, fit.failed].map(|count| count as u64);
+        [&of_estimate(&fit.mean)[..], &[fit.median.to_bits()], &counts].concat()
+    };
+    let mut bits = vec![point.runs_with_jump as u64];
+    bits.extend(point.fits.iter().flat_map(of_fit));
+    bits.extend(of_estimate(&point.unscented_less_converted));
+    bits.extend(of_estimate(&point.plain_less_wrapped));
+    bits
+}
