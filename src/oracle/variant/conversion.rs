@@ -1,6 +1,7 @@
 //! Variants of converted measurements: the position that is measured, and its covariance.
 //!
-//! After this file the reader knows how a conversion goes wrong by its axes, its signs and its noise, and which debiasing is taken for which.
+//! After this file the reader knows how a conversion goes wrong by its axes, its signs and its noise, and which debiasing is taken for
+//! which.
 
 use super::super::setup::Setup;
 use crate::filter::converted::{converted_covariance, converted_measurement};
