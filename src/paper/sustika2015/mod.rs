@@ -6,9 +6,11 @@
 //! - [`contestants`]: the two filters that are compared, and the unscented one with bearings that are never wrapped;
 //! - [`scenario`](mod@scenario): a simulation with every choice made, and a run of it;
 //! - [`sweep`]: scenario 3, the filters' noise parameters varied one at a time;
+//! - [`divergence`]: whether the unscented filter diverges because of the noises or because of the cut of the bearings;
 //! - [`journal`]: the finished points of a sweep, in a file, from which it goes on after an interruption.
 
 pub mod contestants;
+pub mod divergence;
 pub mod journal;
 pub mod scenario;
 pub mod sweep;
