@@ -11,6 +11,7 @@ use immaculate::model::wiener::{
     constant_acceleration_in_the_plane, constant_velocity_in_the_plane, velocity_noise_in_the_plane,
 };
 use immaculate::model::{Measurement, PolarComponent};
+use immaculate::paper::simulation::Simulation;
 use immaculate::paper::specification::{Choices, InvalidChoice};
 use immaculate::paper::sustika2015::contestants::Bearings;
 use immaculate::paper::sustika2015::journal::{BadJournal, Header, Journal, columns, line};
@@ -25,8 +26,10 @@ use immaculate::paper::sustika2015::{
 };
 use immaculate::rule::unscented::unscented_in;
 use immaculate::statistics::Estimate;
+use immaculate::statistics::estimate::mean;
 use immaculate::statistics::fit_error::{FitForm, position_fit_error};
 use nalgebra::{Matrix4, Matrix6, SMatrix, Vector2, Vector4, Vector6};
+use rayon::prelude::*;
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 
@@ -308,6 +311,48 @@ fn a_run_begins_at_the_first_measurement_and_is_measured_from_the_first_step_tha
         );
         assert_eq!(initial.modes[1].covariance[(4, 4)].to_bits(), 1.0_f64.to_bits());
     }
+}
+
+/// Statistical, 150 runs, seed 1; each comparison at 4 standard errors, a false alarm in 16 000 for a Gaussian figure. Embedded mixing,
+/// which is (7) and (8) for the models as they are stated, serves best where the filter knows the noises; where it takes the target to be
+/// calmer than it is, unbiased mixing, which does not draw the acceleration towards zero, has the smaller and the more honest error, and
+/// mixing index by index does not help.
+#[test]
+fn unbiased_mixing_helps_a_filter_that_is_too_calm_and_costs_one_that_is_right() {
+    const RUNS: usize = 150;
+    let with = |name: &str, mixing: &str| {
+        let scenario = scenario(&Choices::of("scenario", name).with("mixing", mixing)).unwrap();
+        let of_run = |run: usize| {
+            let run = &scenario.one_run(run, 1)[0];
+            (
+                run.fit_error.unwrap(),
+                run.nees.iter().sum::<f64>() / run.nees.len() as f64,
+            )
+        };
+        (0..RUNS).into_par_iter().map(of_run).collect::<Vec<_>>()
+    };
+    let distance = |a: &[(f64, f64)], b: &[(f64, f64)]| {
+        let differences: Vec<f64> = a.iter().zip(b).map(|(a, b)| a.0 - b.0).collect();
+        mean(&differences).distance_from(0.0)
+    };
+    let nees = |runs: &[(f64, f64)]| runs.iter().map(|run| run.1).sum::<f64>() / runs.len() as f64;
+    let [embedded, unbiased, index_wise] =
+        ["embedded", "unbiased", "index-wise"].map(|mixing| with("mismatched-manoeuvring", mixing));
+    assert!(
+        distance(&unbiased, &embedded) < -4.0,
+        "{}",
+        distance(&unbiased, &embedded)
+    );
+    // Six entries of the state: six are expected.
+    assert!(nees(&unbiased) < nees(&embedded) && nees(&embedded) > 6.0);
+    assert!(distance(&index_wise, &unbiased) > 4.0);
+
+    let [embedded, unbiased] = ["embedded", "unbiased"].map(|mixing| with("matched-straight", mixing));
+    assert!(
+        distance(&unbiased, &embedded) > 4.0,
+        "{}",
+        distance(&unbiased, &embedded)
+    );
 }
 
 #[test]

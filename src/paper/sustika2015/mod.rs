@@ -151,6 +151,7 @@ fn setup(choices: &Choices) -> Result<Setup, InvalidChoice> {
         },
         // α, β and κ; n = 6.
         unscented: match chosen("unscented")? {
+            "half" => [0.5, 2.0, -3.0],
             "zero" => [1.0, 0.0, 0.0],
             "scaled" => [1e-3, 2.0, 0.0],
             _ => [1.0, 0.0, -3.0],
