@@ -80,7 +80,7 @@ class PointsFromRowsOfTheRoot:
 
     def points(self, estimate):
         mean, covariance = estimate
-        return mean + self.rule[0] @ self.square_root(covariance)
+        return mean + self.rule[0] @ self.root(covariance)
 
 
 class Cubature5Weight13:
@@ -95,6 +95,21 @@ class Cubature5Weight13:
             if n > 1 and math.isclose(arguments["rule"][1][0], 2 / (n + 2), rel_tol=1e-6):
                 arguments["rule"] = (points, weights, weights)
         super().__init__(**arguments)
+
+
+class ConvertedCovarianceNotRotated:
+    """The variances along and across the line of sight are used for those of x and y."""
+
+    def converted_covariance(self, z):
+        distance = z[self.conversion.rows[0]]
+        return np.diag(self.conversion.variances(distance))
+
+
+class ConvertedCovarianceCrossTermOfOtherSign:
+    """A slip of sign in sustika2015 (26)."""
+
+    def converted_covariance(self, z):
+        return super().converted_covariance(z) * np.array([[1, -1], [-1, 1]], self.number)
 
 
 class MeasurementNoiseDoubled:
@@ -266,6 +281,8 @@ MISTAKES = {
     "points-not-drawn-afresh": PointsNotDrawnAfresh,
     "points-from-rows-of-the-root": PointsFromRowsOfTheRoot,
     "cubature-5-weight-13": Cubature5Weight13,
+    "converted-covariance-not-rotated": ConvertedCovarianceNotRotated,
+    "converted-covariance-cross-term-of-other-sign": ConvertedCovarianceCrossTermOfOtherSign,
     "measurement-noise-doubled": MeasurementNoiseDoubled,
     "measurement-noise-omitted": MeasurementNoiseOmitted,
     "innovation-not-wrapped": InnovationNotWrapped,
