@@ -98,11 +98,12 @@ class Cubature5Weight13:
 
 
 class ConvertedCovarianceNotRotated:
-    """The variances along and across the line of sight are used for those of x and y."""
+    """diag(s_r^2, r^2 s_theta^2), along and across the line of sight, is used for x and y."""
 
     def converted_covariance(self, z):
         distance = z[self.conversion.rows[0]]
-        return np.diag(self.conversion.variances(distance))
+        across = distance**2 * self.conversion.bearing_variance
+        return np.diag([self.conversion.range_variance, across])
 
 
 class ConvertedCovarianceCrossTermOfOtherSign:
@@ -123,9 +124,10 @@ class MeasurementNoiseDoubled:
 class MeasurementNoiseOmitted:
     """S = H P H'."""
 
-    def __init__(self, **arguments):
-        arguments["measurement_noise"] = np.zeros_like(arguments["measurement_noise"])
-        super().__init__(**arguments)
+    def measure(self, mode):
+        noise, self.measurement_noise = self.measurement_noise, 0 * self.measurement_noise
+        super().measure(mode)
+        self.measurement_noise = noise
 
 
 class InnovationNotWrapped:
