@@ -12,7 +12,9 @@ Options, to see what the verdicts look like:
     --show everything|posteriors|combined    how much of a step is shown
     --form gain|joseph|inverse|information   other algebra for the same exact values
     --single                                 all arithmetic in single precision
-    --convention KEY=VALUE                   another convention, declared (see spec/formats.md)
+    --convention KEY=VALUE                   another convention, declared (see spec/formats.md);
+                                             there is no other unequal_dimensions and no other
+                                             converted_covariance here
     --mistake NAME                           a planted mistake (numpy_mistakes.py); may be repeated
 """
 

@@ -89,7 +89,7 @@ python_filters() {
 
     expect 0 "RIGHT: numpy example, double precision" -- -- "${numpy[@]}"
     expect 0 "RIGHT: numpy example, single precision" -- -- "${numpy[@]}" --single
-    expect 0 "15 right of 15 cases" -- "${converted[@]}" -- "${numpy[@]}"
+    expect 0 "15 right of 15 cases" "4932 of 4932 values" -- "${converted[@]}" -- "${numpy[@]}"
     expect 0 "11 right, 4 skipped of 15 cases" "needs covariances with an inverse" -- "${converted[@]}" -- "${numpy[@]}" --form information
     for form in joseph inverse; do
         expect 0 "RIGHT: numpy example, double precision" -- -- "${numpy[@]}" --form "$form"
@@ -173,7 +173,7 @@ octave_filter() {
     octave-cli --no-init-file --eval "addpath('$adapters'); octave_imm('$work/problems', '$work/answers')" >"$work/octave" 2>&1 ||
         cat "$work/octave"
     expect 0 "RIGHT: Octave example, double precision" -- --answers "$work/answers"
-    expect 0 "11 right of 11 cases" -- --kind converted --answers "$work/answers"
+    expect 0 "11 right of 11 cases" "3524 of 3524 values" -- --kind converted --answers "$work/answers"
 }
 
 cpp_filter() {
@@ -183,7 +183,7 @@ cpp_filter() {
     fi
     g++ -std=c++17 -O2 -Wall -Wextra -Werror -I /usr/include/eigen3 -o "$work/imm" "$adapters/cpp/main.cpp"
     expect 0 "RIGHT: C++ example, double precision" -- -- "$work/imm"
-    expect 0 "11 right of 11 cases" -- --kind converted -- "$work/imm"
+    expect 0 "11 right of 11 cases" "3524 of 3524 values" -- --kind converted -- "$work/imm"
 }
 
 python_filters
