@@ -62,7 +62,10 @@ fn a_trace_shows_every_value_with_its_equation() {
         text.contains("step 1: z = [160.0, -35.0]") && text.contains("left turn"),
         "{text}"
     );
-    for quantity in Quantity::ALL.into_iter().filter(|quantity| !quantity.needs_conversion()) {
+    for quantity in Quantity::ALL
+        .into_iter()
+        .filter(|quantity| !quantity.needs_conversion())
+    {
         let heading = format!("  {}  —  {}\n", quantity.name(), quantity.equation());
         assert!(text.contains(&heading), "{heading}");
     }
