@@ -9,7 +9,7 @@
 //! | [`gaussian`]   | mean and covariance, density, moments of a mixture                                        |
 //! | [`rule`]       | cubature rules in exact form, their moments and degrees                                   |
 //! | [`model`]      | how the target moves, what the sensor sees                                                |
-//! | [`filter`]     | one filter: Kalman, cubature, fixed gain                                                  |
+//! | [`filter`]     | one filter: Kalman, cubature, converted measurements, fixed gain                           |
 //! | [`imm`]        | the cycle                                                                                 |
 //! | [`steady`]     | steady gains, Riccati and Lyapunov equations, joint stability and its certificates         |
 //! | [`oracle`]     | certified cases, traces, and the judge of other filters                                   |

@@ -204,8 +204,8 @@ fn unequal_estimates() -> Vec<Gaussian<Rational, 3>> {
     ]
 }
 
-/// Exact: embedded mixing is the law of total covariance; index by index, exactly the terms with the missing entry of the mode that lacks it
-/// are left out. Here w = (1/4, 3/4), ā = 6, the deviation of constant velocity (−3/2, 9/4, −6).
+/// Exact: embedded mixing is the law of total covariance; index by index, exactly the terms with the missing entry of the mode that
+/// lacks it are left out. Here w = (1/4, 3/4), ā = 6, the deviation of constant velocity (−3/2, 9/4, −6).
 #[test]
 fn index_wise_mixing_leaves_out_the_spread_of_a_missing_entry() {
     let weights = [Rational::new(1, 4), Rational::new(3, 4)];

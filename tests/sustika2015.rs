@@ -11,6 +11,7 @@ use immaculate::model::wiener::{
     constant_acceleration_in_the_plane, constant_velocity_in_the_plane, velocity_noise_in_the_plane,
 };
 use immaculate::model::{Measurement, PolarComponent};
+use immaculate::paper::simulation::Simulation;
 use immaculate::paper::specification::{Choices, InvalidChoice};
 use immaculate::paper::sustika2015::contestants::Bearings;
 use immaculate::paper::sustika2015::journal::{BadJournal, Header, Journal, columns, line};
@@ -25,8 +26,10 @@ use immaculate::paper::sustika2015::{
 };
 use immaculate::rule::unscented::unscented_in;
 use immaculate::statistics::Estimate;
+use immaculate::statistics::estimate::mean;
 use immaculate::statistics::fit_error::{FitForm, position_fit_error};
 use nalgebra::{Matrix4, Matrix6, SMatrix, Vector2, Vector4, Vector6};
+use rayon::prelude::*;
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 
@@ -310,6 +313,48 @@ fn a_run_begins_at_the_first_measurement_and_is_measured_from_the_first_step_tha
     }
 }
 
+/// Statistical, 150 runs, seed 1; each comparison at 4 standard errors, a false alarm in 16 000 for a Gaussian figure. Embedded mixing,
+/// which is (7) and (8) for the models as they are stated, serves best where the filter knows the noises; where it takes the target to be
+/// calmer than it is, unbiased mixing, which does not draw the acceleration towards zero, has the smaller and the more honest error, and
+/// mixing index by index does not help.
+#[test]
+fn unbiased_mixing_helps_a_filter_that_is_too_calm_and_costs_one_that_is_right() {
+    const RUNS: usize = 150;
+    let with = |name: &str, mixing: &str| {
+        let scenario = scenario(&Choices::of("scenario", name).with("mixing", mixing)).unwrap();
+        let of_run = |run: usize| {
+            let run = &scenario.one_run(run, 1)[0];
+            (
+                run.fit_error.unwrap(),
+                run.nees.iter().sum::<f64>() / run.nees.len() as f64,
+            )
+        };
+        (0..RUNS).into_par_iter().map(of_run).collect::<Vec<_>>()
+    };
+    let distance = |a: &[(f64, f64)], b: &[(f64, f64)]| {
+        let differences: Vec<f64> = a.iter().zip(b).map(|(a, b)| a.0 - b.0).collect();
+        mean(&differences).distance_from(0.0)
+    };
+    let nees = |runs: &[(f64, f64)]| runs.iter().map(|run| run.1).sum::<f64>() / runs.len() as f64;
+    let [embedded, unbiased, index_wise] =
+        ["embedded", "unbiased", "index-wise"].map(|mixing| with("mismatched-manoeuvring", mixing));
+    assert!(
+        distance(&unbiased, &embedded) < -4.0,
+        "{}",
+        distance(&unbiased, &embedded)
+    );
+    // Six entries of the state: six are expected.
+    assert!(nees(&unbiased) < nees(&embedded) && nees(&embedded) > 6.0);
+    assert!(distance(&index_wise, &unbiased) > 4.0);
+
+    let [embedded, unbiased] = ["embedded", "unbiased"].map(|mixing| with("matched-straight", mixing));
+    assert!(
+        distance(&unbiased, &embedded) > 4.0,
+        "{}",
+        distance(&unbiased, &embedded)
+    );
+}
+
 #[test]
 fn every_form_of_the_fit_error_is_of_the_same_runs() {
     let fit = |form: &str| {
@@ -396,7 +441,7 @@ fn what_a_point_counts_is_what_its_runs_show() {
     assert_eq!(fit.median.to_bits(), fits[RUNS / 2].to_bits());
     // The differences of the means are the means of the differences, but for the order of 21 sums.
     let [converted, wrapped, plain] = point.fits.map(|fit| fit.mean.value);
-    assert!((point.plain_less_wrapped.value - (plain - wrapped)).abs() < 1e-12 * plain);
+    assert!((point.plain_less_converted.value - (plain - converted)).abs() < 1e-12 * plain);
     assert!((point.unscented_less_converted.value - (wrapped - converted)).abs() < 1e-12 * plain);
 }
 
@@ -623,7 +668,7 @@ fn few_points() -> Vec<Point> {
                 value: b,
                 standard_error: c,
             },
-            plain_less_wrapped: Estimate {
+            plain_less_converted: Estimate {
                 value: c,
                 standard_error: a,
             },
@@ -655,6 +700,6 @@ fn bits(point: &Point) -> Vec<u64> {
     let mut bits = vec![point.runs_with_jump as u64];
     bits.extend(point.fits.iter().flat_map(of_fit));
     bits.extend(of_estimate(&point.unscented_less_converted));
-    bits.extend(of_estimate(&point.plain_less_wrapped));
+    bits.extend(of_estimate(&point.plain_less_converted));
     bits
 }

@@ -189,7 +189,15 @@ fn latex_braces_and_environments_balance() {
 const WITHOUT_SOURCE: [(&str, &[&str]); 4] = [
     (
         "their name is their definition",
-        &["is_symmetric", "is_finite", "all_finite", "is_angle", "distance_from"],
+        &[
+            "is_symmetric",
+            "is_finite",
+            "all_finite",
+            "is_angle",
+            "is_converted",
+            "reports",
+            "distance_from",
+        ],
     ),
     (
         "they read or count what a rule holds",

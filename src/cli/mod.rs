@@ -1,15 +1,18 @@
-//! The commands of the oracle, one file each: arguments in, text and exit status out.
+//! The commands, one file each: arguments in, text and exit status out.
 //!
 //! After this folder the reader knows how each command calls the library, and that files are written whole or not at all.
 
 pub mod answer;
 pub mod cases;
 pub mod check;
+pub mod reproduce;
 pub mod stability;
 pub mod sweep;
 pub mod trace;
 pub mod variants;
 
+use immaculate::paper::{Effort, Paper};
+use indicatif::{ProgressBar, ProgressStyle};
 use std::io::Write;
 use std::path::Path;
 
@@ -84,3 +87,27 @@ pub fn read_file(path: &Path) -> Result<String, Refusal> {
 }
 
 use std::io::Read as _;
+
+/// The given papers; all when there is none.
+pub fn papers(given: &[Paper]) -> Vec<Paper> {
+    if given.is_empty() {
+        Paper::ALL.to_vec()
+    } else {
+        given.to_vec()
+    }
+}
+
+/// How much is computed.
+pub fn effort(runs: Option<u64>, seed: u64) -> Effort {
+    Effort {
+        runs: runs.and_then(|runs| usize::try_from(runs).ok()),
+        seed,
+    }
+}
+
+/// A progress bar on standard error; it shows itself only where a person is watching.
+pub fn progress_bar(length: u64, what: &'static str) -> ProgressBar {
+    let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} runs, {eta} left")
+        .unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::new(length).with_style(style).with_message(what)
+}

@@ -148,7 +148,8 @@ pub struct FixedGainFile {
 }
 
 impl FilterFile {
-    /// The kind's short name: `kalman`, `unscented`, the rule's, `converted`, `fixed-gain` or, where no estimates are mixed, `fixed-gain-unmixed`.
+    /// The kind's short name: `kalman`, `unscented`, the rule's, `converted`, `fixed-gain` or, where no estimates are mixed,
+    /// `fixed-gain-unmixed`.
     pub fn name(&self) -> &str {
         match self {
             Self::Kalman {} => "kalman",

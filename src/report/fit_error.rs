@@ -2,8 +2,8 @@
 //!
 //! After this file the reader can see how the percentage fit errors of the filters change with the noise that they take for granted, and
 //! whether it is the noise or the cut of the bearings at ±π that makes the unscented filter diverge. A line is a mean over runs, the band
-//! around it one standard error to either side; where a filter diverges, the axis is logarithmic. Filters that coincide are still seen: each
-//! line is drawn thinner over the one before.
+//! around it one standard error to either side; where a filter diverges, the axis is logarithmic. Filters that coincide are still seen:
+//! each line is drawn thinner over the one before.
 
 use super::figure::{NotDrawn, not_drawn};
 use super::{standard_errors, table};

@@ -16,6 +16,7 @@ is the one of FilterPy's documentation.
     unscented           kalman.UnscentedKalmanFilter; its points are JulierSigmaPoints where
                         alpha = 1 and beta = 0, MerweScaledSigmaPoints elsewhere
     cubature-3          kalman.CubatureKalmanFilter
+    converted           not asked for: FilterPy converts no measurements
     no detection        update(None)
 
 The unscented filter averages bearings as vectors, which is declared; the cubature filter takes the

@@ -12,7 +12,9 @@ Options, to see what the verdicts look like:
     --show everything|posteriors|combined    how much of a step is shown
     --form gain|joseph|inverse|information   other algebra for the same exact values
     --single                                 all arithmetic in single precision
-    --convention KEY=VALUE                   another convention, declared (see spec/formats.md)
+    --convention KEY=VALUE                   another convention, declared (see spec/formats.md);
+                                             there is no other unequal_dimensions and no other
+                                             converted_covariance here
     --mistake NAME                           a planted mistake (numpy_mistakes.py); may be repeated
 """
 
@@ -98,14 +100,19 @@ def arguments_of(problem, options):
     number = np.float32 if options.single else np.float64
     n = len(problem["state"])
     kind = problem["filter"]["kind"]
-    points = None if kind == "kalman" else rule(problem["filter"], n)
+    converts = kind == "converted"
+    points = None if kind == "kalman" or converts else rule(problem["filter"], n)
+    angle_mean = options.conventions.get("angle_mean", "centre-point")
     return {
         "transition_matrices": [np.array(mode["F"], number) for mode in problem["modes"]],
         "process_noises": [np.array(mode["Q"], number) for mode in problem["modes"]],
-        "measurement": Measurement.of(
-            problem["measurement"], number, options.conventions.get("angle_mean", "centre-point")
+        "measurement": (
+            Measurement.of_position(problem["measurement"], n, number)
+            if converts
+            else Measurement.of(problem["measurement"], number, angle_mean)
         ),
         "measurement_noise": np.array(problem["R"], number),
+        "conversion": Conversion.of(problem, number) if converts else None,
         "chain": np.array(problem["transition"], number),
         "mode_probabilities": np.array(problem["initial"]["mode_probabilities"], number),
         "means": [np.array(estimate["mean"], number) for estimate in problem["initial"]["modes"]],
@@ -129,6 +136,9 @@ def shown(number, step, show):
     if show == "everything":
         listed["predicted_mode_probabilities"] = step.predicted_mode_probabilities.tolist()
         listed["combined_prediction"] = estimate(step.combined_prediction)
+        if step.converted_measurement is not None:
+            listed["converted_measurement"] = step.converted_measurement.tolist()
+            listed["converted_covariance"] = step.converted_covariance.tolist()
         for mode, values in zip(listed["modes"], step.modes):
             mode["mixing_probabilities"] = values.mixing_probabilities.tolist()
             mode["mixed"] = estimate(values.mixed)
@@ -177,9 +187,10 @@ def check_problem(problem):
         check_covariance(f"modes[{j}].Q", mode["Q"], semidefinite=True)
     check_covariance("R", problem["R"])
     for j, initial in enumerate(problem["initial"]["modes"]):
-        check_covariance(f"initial.modes[{j}].covariance", initial["covariance"])
+        place = f"initial.modes[{j}].covariance"
+        check_initial_covariance(place, initial["covariance"], problem["modes"][j])
     check_names(problem, n)
-    check_bearings(problem)
+    check_ranges_and_bearings(problem)
 
 
 def check_shapes(problem, n, m, r):
@@ -235,6 +246,13 @@ def check_covariance(place, rows, semidefinite=False):
         )
 
 
+def check_initial_covariance(place, rows, mode):
+    """Positive definite, but for entries that the mode sets to zero: their rows may be zeros."""
+    matrix = np.array(rows, float)
+    lacking = ~np.any(np.hstack([mode["F"], mode["Q"], matrix]), axis=1)
+    check_covariance(place, matrix + np.diag(lacking))
+
+
 def check_names(problem, n):
     """Filter, measurement and conventions are known ones."""
     known = {
@@ -242,9 +260,12 @@ def check_names(problem, n):
         "angle_mean": "centre-point",
         "first_step": "mixed",
         "log_likelihood": "full",
+        "unequal_dimensions": "embedded",
+        "converted_covariance": "at-measurement",
     }
-    if problem["conventions"] != known:
-        raise Rejected("unknown", f"conventions are {problem['conventions']}")
+    for key, value in problem["conventions"].items():
+        if known.get(key) != value:
+            raise Rejected("unknown", f"conventions.{key} is {value}")
     measurement = problem["measurement"]
     if measurement["kind"] not in ("linear", "range-bearing"):
         raise Rejected("unknown", f"measurement {measurement['kind']}")
@@ -259,14 +280,28 @@ def check_names(problem, n):
     if problem["filter"]["kind"] == "kalman":
         if measurement["kind"] != "linear":
             raise Rejected("unknown", "the Kalman filter has linear measurements only")
+    elif problem["filter"]["kind"] == "converted":
+        check_conversion(problem)
     else:
         rule(problem["filter"], n)
 
 
-def check_bearings(problem):
-    """A bearing beyond two turns is probably in degrees."""
+def check_conversion(problem):
+    """One range and one bearing, of independent noise, and a conversion that is known."""
+    if problem["filter"]["conversion"] not in CONVERSIONS:
+        raise Rejected("unknown", f"conversion {problem['filter']['conversion']}")
+    if sorted(problem["measurement"].get("components", [])) != ["bearing", "range"]:
+        raise Rejected("unknown", "what is converted is one range and one bearing")
+    if problem["R"][0][1] != 0:
+        raise Rejected("unknown", "a conversion knows no covariance of range and bearing")
+
+
+def check_ranges_and_bearings(problem):
+    """A range is not negative; a bearing beyond two turns is probably in degrees."""
     for k, entry in enumerate(problem["measurements"]):
         for name, value in zip(problem["measurement"].get("components", []), entry["z"] or []):
+            if name == "range" and value < 0:
+                raise Rejected("range", f"measurements[{k}].z has the range {value}")
             if name == "bearing" and abs(value) > 2 * math.pi:
                 raise Rejected(
                     "angle", f"measurements[{k}].z has the bearing {value}: is it in degrees?"
@@ -396,6 +431,11 @@ class Measurement:
             number, None, parameters["components"], parameters["position"], sensor, angle_mean
         )
 
+    @staticmethod
+    def of_position(parameters, n, number):
+        """The position itself, which is what range and bearing are converted to."""
+        return Measurement(number, matrix=np.eye(n, dtype=number)[parameters["position"]])
+
     def of_states(self, states):
         """The measurements of states, one a row."""
         if self.matrix is not None:
@@ -425,6 +465,69 @@ class Measurement:
             else:
                 mean[row] = centre[row] + weights @ wrapped(values[:, row] - centre[row])
         return mean
+
+
+CONVERSIONS = ["standard", "additive", "multiplicative", "modified-unbiased"]
+
+
+@dataclass
+class Conversion:
+    """How range and bearing become a position with a covariance."""
+
+    name: str
+    rows: list  # where range and bearing stand in z
+    sensor: np.ndarray
+    range_variance: np.floating
+    bearing_variance: np.floating
+
+    @staticmethod
+    def of(problem, number):
+        """From the problem."""
+        measurement = problem["measurement"]
+        rows = [measurement["components"].index(name) for name in ("range", "bearing")]
+        sensor = np.array(measurement["sensor"], number)
+        variances = np.diag(np.array(problem["R"], number))[rows]
+        return Conversion(problem["filter"]["conversion"], rows, sensor, *variances)
+
+    def factor(self):
+        """What the position is multiplied by, against the bias that a noisy bearing makes."""
+        w = np.exp(-self.bearing_variance / 2)
+        factors = {
+            "standard": 1,
+            "additive": 1 - (w**2 - w),
+            "multiplicative": 1 / w,
+            "modified-unbiased": w,
+        }
+        return factors[self.name]
+
+    def variances(self, distance):
+        """The variances of the position along and across the line of sight."""
+        w = np.exp(-self.bearing_variance / 2)
+        square, noise = distance**2, self.range_variance
+        along, across = (1 + w**4) / 2 * (square + noise), (1 - w**4) / 2 * (square + noise)
+        if self.name == "standard":
+            return noise, square * self.bearing_variance
+        if self.name == "multiplicative":
+            return along + (w**-2 - 2) * square, across
+        if self.name == "modified-unbiased":
+            return along - w**2 * square, across
+        return (
+            (1 + w**8) / 2 * (square + 2 * noise) - w**2 * along,
+            (1 - w**8) / 2 * (square + 2 * noise) - w**2 * across,
+        )
+
+    def position(self, z):
+        """The sensor's place, and f r (cos, sin) from there."""
+        distance, bearing = z[self.rows]
+        direction = np.array([np.cos(bearing), np.sin(bearing)])
+        return self.sensor + self.factor() * distance * direction
+
+    def covariance(self, z):
+        """The variances along and across the line of sight, turned into the plane."""
+        distance, bearing = z[self.rows]
+        cosine, sine = np.cos(bearing), np.sin(bearing)
+        turn = np.array([[cosine, -sine], [sine, cosine]])
+        return turn @ np.diag(self.variances(distance)) @ turn.T
 
 
 def cholesky_upper(covariance):
@@ -472,6 +575,8 @@ class Step:
     modes: list
     predicted_mode_probabilities: np.ndarray = None
     combined_prediction: tuple = None
+    converted_measurement: np.ndarray = None
+    converted_covariance: np.ndarray = None
     mode_probabilities: np.ndarray = None
     combined: tuple = None
 
@@ -489,6 +594,7 @@ class Imm:
         mode_probabilities,
         means,
         covariances,
+        conversion=None,
         rule=None,
         square_root=np.linalg.cholesky,
         mixes_first=True,
@@ -502,6 +608,7 @@ class Imm:
         self.chain = chain  # chain[i, j] = P(mode j now | mode i before)
         self.mode_probabilities = mode_probabilities
         self.estimates = list(zip(means, covariances))
+        self.conversion = conversion  # of ranges and bearings to positions; None: as measured
         self.rule = rule  # points, weights, covariance weights; None for the Kalman filter
         self.square_root = square_root
         self.mixes = mixes_first
@@ -521,6 +628,10 @@ class Imm:
             mode.mixed = self.mixed(mode)
             mode.predicted = self.predicted(mode)
         now.combined_prediction = self.combined_prediction(now)
+        if z is not None and self.conversion is not None:
+            now.converted_measurement = self.converted_measurement(z)
+            now.converted_covariance = self.converted_covariance(z)
+            z, self.measurement_noise = now.converted_measurement, now.converted_covariance
         for mode in now.modes:
             if z is None:
                 mode.updated = mode.predicted
@@ -568,7 +679,23 @@ class Imm:
     def points(self, estimate):
         """The rule's points about an estimate, one a row."""
         mean, covariance = estimate
-        return mean + self.rule[0] @ self.square_root(covariance).T
+        return mean + self.rule[0] @ self.root(covariance).T
+
+    def root(self, covariance):
+        """A square root. An entry without variance has a row of zeros in both."""
+        varying = np.any(covariance != 0, axis=1)
+        block = np.ix_(varying, varying)
+        root = np.zeros_like(covariance)
+        root[block] = self.square_root(covariance[block])
+        return root
+
+    def converted_measurement(self, z):
+        """Range and bearing as a position."""
+        return self.conversion.position(z)
+
+    def converted_covariance(self, z):
+        """The noise of that position, R of this step."""
+        return self.conversion.covariance(z)
 
     def measure(self, mode):
         """Predicted measurement, its covariance S, and its covariance C with the state."""

@@ -80,7 +80,7 @@ class PointsFromRowsOfTheRoot:
 
     def points(self, estimate):
         mean, covariance = estimate
-        return mean + self.rule[0] @ self.square_root(covariance)
+        return mean + self.rule[0] @ self.root(covariance)
 
 
 class Cubature5Weight13:
@@ -97,6 +97,22 @@ class Cubature5Weight13:
         super().__init__(**arguments)
 
 
+class ConvertedCovarianceNotRotated:
+    """diag(s_r^2, r^2 s_theta^2), along and across the line of sight, is used for x and y."""
+
+    def converted_covariance(self, z):
+        distance = z[self.conversion.rows[0]]
+        across = distance**2 * self.conversion.bearing_variance
+        return np.diag([self.conversion.range_variance, across])
+
+
+class ConvertedCovarianceCrossTermOfOtherSign:
+    """A slip of sign in sustika2015 (26)."""
+
+    def converted_covariance(self, z):
+        return super().converted_covariance(z) * np.array([[1, -1], [-1, 1]], self.number)
+
+
 class MeasurementNoiseDoubled:
     """R is in S already, and is added again."""
 
@@ -108,9 +124,10 @@ class MeasurementNoiseDoubled:
 class MeasurementNoiseOmitted:
     """S = H P H'."""
 
-    def __init__(self, **arguments):
-        arguments["measurement_noise"] = np.zeros_like(arguments["measurement_noise"])
-        super().__init__(**arguments)
+    def measure(self, mode):
+        noise, self.measurement_noise = self.measurement_noise, 0 * self.measurement_noise
+        super().measure(mode)
+        self.measurement_noise = noise
 
 
 class InnovationNotWrapped:
@@ -266,6 +283,8 @@ MISTAKES = {
     "points-not-drawn-afresh": PointsNotDrawnAfresh,
     "points-from-rows-of-the-root": PointsFromRowsOfTheRoot,
     "cubature-5-weight-13": Cubature5Weight13,
+    "converted-covariance-not-rotated": ConvertedCovarianceNotRotated,
+    "converted-covariance-cross-term-of-other-sign": ConvertedCovarianceCrossTermOfOtherSign,
     "measurement-noise-doubled": MeasurementNoiseDoubled,
     "measurement-noise-omitted": MeasurementNoiseOmitted,
     "innovation-not-wrapped": InnovationNotWrapped,

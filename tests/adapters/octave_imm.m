@@ -19,7 +19,7 @@ function octave_imm(problems, answers, form)
     mkdir(answers);
   end
   ready.name = 'Octave example';                       % CHANGE HERE
-  ready.kinds = {'kalman', 'cubature-3'};              % CHANGE HERE: which filters there are
+  ready.kinds = {'kalman', 'cubature-3', 'converted'}; % CHANGE HERE: which filters there are
   ready.validates = false;                             % problems that must be rejected are not asked for
   write_text(fullfile(answers, 'ready.json'), jsonencode(ready));
   files = dir(fullfile(problems, '*.problem.json'));
@@ -60,7 +60,15 @@ function steps = run(problem)
   imm.Q = {problem.modes.Q};
   imm.R = problem.R;
   imm.measurement = problem.measurement;
-  imm.has_points = ~strcmp(problem.filter.kind, 'kalman');
+  imm.has_points = strcmp(problem.filter.kind, 'cubature');
+  imm.conversion = '';                                 % of ranges and bearings to positions
+  if strcmp(problem.filter.kind, 'converted')
+    imm.conversion = problem.filter.conversion;
+    imm.polar = problem.measurement;
+    imm.polar.R = problem.R;
+    H = eye(numel(problem.state));
+    imm.measurement = struct('kind', 'linear', 'H', H(problem.measurement.position + 1, :));
+  end
   imm.transition = problem.transition;                 % transition(i, j): from i to j
   imm.probabilities = problem.initial.mode_probabilities;
   imm.means = {problem.initial.modes.mean};
@@ -134,6 +142,11 @@ function [imm, shown] = step(imm, z)
   end
   [mean, covariance] = mixture(c, x, P);
   shown.combined_prediction = estimate(mean, covariance);
+  if ~isempty(z) && ~isempty(imm.conversion)
+    [z, imm.R] = converted(imm.conversion, imm.polar, z);
+    shown.converted_measurement = z;
+    shown.converted_covariance = imm.R;
+  end
   for j = 1:r
     if ~isempty(z)
       [predicted_measurement, S, C] = measure(imm, x{j}, P{j});
@@ -174,6 +187,38 @@ function [mean, covariance] = predict(imm, j, x, P)
     mean = F * x;
     covariance = F * P * F' + imm.Q{j};
   end
+end
+
+% Range and bearing as a position with a covariance
+function [position, covariance] = converted(name, polar, z)
+  range = strcmp(polar.components, 'range');
+  bearing = strcmp(polar.components, 'bearing');
+  square = z(range) ^ 2;
+  noise = polar.R(range, range);
+  w = exp(-polar.R(bearing, bearing) / 2);
+  along = (1 + w ^ 4) / 2 * (square + noise);          % variances along and across the line of sight
+  across = (1 - w ^ 4) / 2 * (square + noise);
+  switch name
+    case 'standard'
+      factor = 1;
+      along = noise;
+      across = square * polar.R(bearing, bearing);
+    case 'additive'
+      factor = 1 - (w ^ 2 - w);
+      along = (1 + w ^ 8) / 2 * (square + 2 * noise) - w ^ 2 * along;
+      across = (1 - w ^ 8) / 2 * (square + 2 * noise) - w ^ 2 * across;
+    case 'multiplicative'
+      factor = 1 / w;
+      along = along + (w ^ -2 - 2) * square;
+    case 'modified-unbiased'
+      factor = w;
+      along = along - w ^ 2 * square;
+    otherwise
+      error('no conversion %s', name);
+  end
+  axes = [cos(z(bearing)), -sin(z(bearing)); sin(z(bearing)), cos(z(bearing))];
+  position = polar.sensor + factor * z(range) * axes(:, 1);
+  covariance = axes * diag([along, across]) * axes';
 end
 
 % Predicted measurement, its covariance, and its covariance with the state

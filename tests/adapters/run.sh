@@ -13,7 +13,8 @@ failures=0
 
 # The cases that are short enough for a filter with a mistake not to run away.
 short=()
-for beginning in mixing likelihood combination update rule.cubature-5 step.n step.c step.s step.u steps chain.not missed wrap; do
+for beginning in mixing likelihood combination update rule.cubature-5 step.n step.c step.s step.u steps chain.not missed wrap \
+    converted unscented.unequal; do
     short+=(--case "$beginning")
 done
 
@@ -21,7 +22,11 @@ immaculate() {
     if [ -n "${IMMACULATE:-}" ]; then "$IMMACULATE" "$@"; else cargo run --quiet --release --locked -- "$@"; fi
 }
 
-# expect STATUS LINE… -- ARGUMENTS OF check…: the exit status, and parts of the report, each of which must be there.
+# Measurements that are converted, modes of unequal dimensions, and what must be refused there.
+converted=(--case converted --case sustika2015 --case unscented.unequal --case rejected.range --case rejected.unknown.conversion)
+
+# expect STATUS LINE… -- ARGUMENTS OF check…: the exit status, and parts of the report, each of which must be there. What is refused is
+# refused in its class.
 expect() {
     local status=$1 found=0 wanted=()
     shift
@@ -33,6 +38,7 @@ expect() {
     local title="$*"
     title=${title//"$work/"/}
     title=${title//"${short[*]}"/(short cases)}
+    title=${title//"${converted[*]}"/(converted measurements and unequal dimensions)}
     immaculate check "$@" >"$work/report" 2>&1 || found=$?
     tr -s ' \n' ' ' <"$work/report" >"$work/words" # sentences are broken into lines
     local complaint=""
@@ -40,6 +46,7 @@ expect() {
     for part in "${wanted[@]}"; do
         grep -qF -- "$part" "$work/words" || complaint="$complaint${complaint:+; }no \"$part\""
     done
+    ! grep -qF "for another reason" "$work/words" || complaint="$complaint${complaint:+; }refused in another class"
     if [ -z "$complaint" ]; then
         echo "as expected  check $title"
     else
@@ -82,6 +89,8 @@ python_filters() {
 
     expect 0 "RIGHT: numpy example, double precision" -- -- "${numpy[@]}"
     expect 0 "RIGHT: numpy example, single precision" -- -- "${numpy[@]}" --single
+    expect 0 "15 right of 15 cases" "4932 of 4932 values" -- "${converted[@]}" -- "${numpy[@]}"
+    expect 0 "11 right, 4 skipped of 15 cases" "needs covariances with an inverse" -- "${converted[@]}" -- "${numpy[@]}" --form information
     for form in joseph inverse; do
         expect 0 "RIGHT: numpy example, double precision" -- -- "${numpy[@]}" --form "$form"
     done
@@ -107,6 +116,8 @@ process-noise-doubled predicted.covariance
 points-not-drawn-afresh innovation_covariance
 points-from-rows-of-the-root predicted_measurement
 cubature-5-weight-13 predicted.mean
+converted-covariance-not-rotated converted_covariance
+converted-covariance-cross-term-of-other-sign converted_covariance
 measurement-noise-omitted innovation_covariance
 measurement-noise-doubled innovation_covariance
 innovation-not-wrapped innovation
@@ -142,6 +153,8 @@ filterpy() {
     expect 1 "FAULT mode_probabilities" -- --case missed.one -- "$@" kalman
     expect 1 "FAULT mode_probabilities" "MOST LIKELY, TWO AT ONCE" "$combined" -- --case outlier -- "$@" kalman
     expect 1 "STOPPED" "array must not contain infs or NaNs" -- --case chain.unreachable -- "$@" kalman
+    # The points' root does not exist where an entry has no variance.
+    expect 1 "STOPPED" "LinAlgError: 5-th leading minor of the array is not positive definite" -- --case unscented.unequal -- "$@" unscented
     # The density drops dimensions where S is nearly singular.
     expect 1 "FAULT log_likelihood" -- --case singular.innovation -- "$@" kalman
     # The cubature filter measures the points that it propagated.
@@ -160,6 +173,7 @@ octave_filter() {
     octave-cli --no-init-file --eval "addpath('$adapters'); octave_imm('$work/problems', '$work/answers')" >"$work/octave" 2>&1 ||
         cat "$work/octave"
     expect 0 "RIGHT: Octave example, double precision" -- --answers "$work/answers"
+    expect 0 "11 right of 11 cases" "3524 of 3524 values" -- --kind converted --answers "$work/answers"
 }
 
 cpp_filter() {
@@ -169,6 +183,7 @@ cpp_filter() {
     fi
     g++ -std=c++17 -O2 -Wall -Wextra -Werror -I /usr/include/eigen3 -o "$work/imm" "$adapters/cpp/main.cpp"
     expect 0 "RIGHT: C++ example, double precision" -- -- "$work/imm"
+    expect 0 "11 right of 11 cases" "3524 of 3524 values" -- --kind converted -- "$work/imm"
 }
 
 python_filters

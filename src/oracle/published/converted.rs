@@ -138,7 +138,13 @@ fn special() -> Vec<ProblemFile> {
                 &with(&["missed-detection"]),
                 "The measurements of converted.several, two of them missing: nothing is converted there, and no covariance either.",
             ),
-        converted(Conversion::ModifiedUnbiased, [9.0, 0.055])
+        at_the_sensor(),
+    ]
+}
+
+/// The target passes over the sensor.
+fn at_the_sensor() -> ProblemFile {
+    converted(Conversion::ModifiedUnbiased, [9.0, 0.055])
             .with(|problem| {
                 for estimate in &mut problem.initial.modes {
                     estimate.mean[0] -= 155.0;
@@ -148,11 +154,10 @@ fn special() -> Vec<ProblemFile> {
             .sees(&[[12.0, -0.9], [0.0, 2.1], [6.5, 2.9]])
             .named(
                 "converted.at-the-sensor",
-                &with(&["curved"]),
+                &["sequence", "converted", "zeros", "curved"],
                 "The target passes over the sensor. A range of zero is measured: the position is the sensor's, and what is left of its \
                  covariance comes from the noise of the range.",
-            ),
-    ]
+            )
 }
 
 /// Constant velocity and constant acceleration in the state of the larger: [x, y, ẋ, ẏ, ẍ, ÿ].

@@ -1,11 +1,13 @@
 //! Variants of converted measurements: the position that is measured, and its covariance.
 //!
-//! After this file the reader knows how a conversion goes wrong by its axes, its signs and its noise, and which debiasing is taken for which.
+//! After this file the reader knows how a conversion goes wrong by its axes, its signs and its noise, and which debiasing is taken for
+//! which.
 
 use super::super::setup::Setup;
 use crate::filter::converted::{converted_covariance, converted_measurement};
 use crate::imm::{Problem, Step};
 use crate::model::angle::wrap;
+use crate::model::conversion_moments::attenuation;
 use crate::model::{Conversion, Measurement, PolarComponent};
 use crate::number::Real;
 use nalgebra::{SMatrix, SVector};
@@ -40,14 +42,22 @@ const VARIANTS: [&str; 14] = [
 fn of_covariance<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
     let entry = &mut setup.equations.converted_covariance;
     match id {
-        // diag(σ_r², r² σ_θ²): along and across the line of sight, taken for x and y
+        // diag(a, b): the variances along and across the line of sight, taken for those of x and y
         "converted-covariance-not-rotated" => {
             *entry = |problem, _, now| {
-                let [r, b, range] = parts(problem, now);
-                SMatrix::from_fn(|row, column| match (row, column) {
-                    (0, 0) => r.clone(),
-                    (1, 1) => b.clone() * range.clone() * range.clone(),
-                    _ => T::zero(),
+                let Measurement::Converted { conversion, .. } = &problem.measurement else {
+                    return usual(problem, now);
+                };
+                let [range_variance, bearing_variance, range] = parts(problem, now);
+                let squared_range = range.clone() * range;
+                let attenuation = attenuation(&bearing_variance);
+                let variances = conversion.variances(&squared_range, &range_variance, &bearing_variance, &attenuation);
+                SMatrix::from_fn(|row, column| {
+                    if row == column {
+                        variances[row].clone()
+                    } else {
+                        T::zero()
+                    }
                 })
             }
         }

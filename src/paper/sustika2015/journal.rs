@@ -255,7 +255,7 @@ pub fn line(setting: &Setting, point: &Point) -> String {
             mean.value, mean.standard_error
         );
     }
-    for difference in [point.unscented_less_converted, point.plain_less_wrapped] {
+    for difference in [point.unscented_less_converted, point.plain_less_converted] {
         let _ = write!(line, ",{:?},{:?}", difference.value, difference.standard_error);
     }
     line
@@ -279,7 +279,7 @@ fn parse(line: &str, setting: &Setting) -> Result<Point, String> {
         runs_with_jump,
         fits,
         unscented_less_converted: fields.estimate()?,
-        plain_less_wrapped: fields.estimate()?,
+        plain_less_converted: fields.estimate()?,
     };
     match fields.0.next() {
         None => Ok(point),

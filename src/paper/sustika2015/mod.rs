@@ -8,9 +8,11 @@
 //! - [`sweep`]: scenario 3, the filters' noise parameters varied one at a time;
 //! - [`operations`]: what a cycle of either filter costs;
 //! - [`reasoning`]: the claims that need no simulation;
+//! - [`divergence`]: whether the unscented filter diverges because of the noises or because of the cut of the bearings;
 //! - [`journal`]: the finished points of a sweep, in a file, from which it goes on after an interruption.
 
 pub mod contestants;
+pub mod divergence;
 pub mod journal;
 pub mod operations;
 pub mod reasoning;
@@ -153,6 +155,7 @@ fn setup(choices: &Choices) -> Result<Setup, InvalidChoice> {
         },
         // α, β and κ; n = 6.
         unscented: match chosen("unscented")? {
+            "half" => [0.5, 2.0, -3.0],
             "zero" => [1.0, 0.0, 0.0],
             "scaled" => [1e-3, 2.0, 0.0],
             _ => [1.0, 0.0, -3.0],

@@ -1,4 +1,5 @@
-// An IMM filter in C++17 with Eigen: Kalman filters, or filters with the points of the third-degree cubature rule.
+// An IMM filter in C++17 with Eigen: Kalman filters, of converted measurements too, or filters with the points of the third-degree
+// cubature rule.
 //
 // It knows nothing of the protocol; that is in main.cpp.
 #pragma once
@@ -43,6 +44,38 @@ struct Measurement {
     }
 };
 
+// How a range and a bearing become a position with a covariance.
+struct Conversion {
+    std::string name;
+    int range = 0, bearing = 1;  // where they stand in z
+    Eigen::Vector2d sensor;
+    double range_variance = 0, bearing_variance = 0;
+
+    Estimate of(const VectorXd &z) const {
+        const double r = z(range), w = std::exp(-bearing_variance / 2), w2 = w * w, w4 = w2 * w2;
+        const double square = r * r, once = square + range_variance, twice = once + range_variance;
+        // The standard one: factor of the position, variances along and across the line of sight.
+        double factor = 1, along = range_variance, across = square * bearing_variance;
+        if (name != "standard") {
+            along = (1 + w4) / 2 * once;
+            across = (1 - w4) / 2 * once;
+        }
+        if (name == "additive") {
+            factor = 1 - (w2 - w);
+            along = (1 + w4 * w4) / 2 * twice - w2 * along;
+            across = (1 - w4 * w4) / 2 * twice - w2 * across;
+        } else if (name == "multiplicative") {
+            factor = 1 / w;
+            along += (1 / w2 - 2) * square;
+        } else if (name == "modified-unbiased") {
+            factor = w;
+            along -= w2 * square;
+        }
+        const Eigen::Matrix2d axes = Eigen::Rotation2Dd(z(bearing)).toRotationMatrix();
+        return {sensor + factor * r * axes.col(0), axes * Eigen::Vector2d(along, across).asDiagonal() * axes.transpose()};
+    }
+};
+
 // What one mode computes in one step.
 struct ModeStep {
     VectorXd mixing_probabilities;
@@ -57,13 +90,15 @@ struct Step {
     VectorXd predicted_mode_probabilities, mode_probabilities;
     std::vector<ModeStep> modes;
     Estimate combined_prediction, combined;
+    std::optional<Estimate> converted;  // the measured position
 };
 
 class Imm {
 public:
     std::vector<MatrixXd> F, Q;     // one a mode
-    MatrixXd R;
+    MatrixXd R;                     // of converted measurements: of this step
     Measurement measurement;
+    std::optional<Conversion> conversion;
     bool has_points = false;        // the third-degree rule, or the Kalman filter
     MatrixXd transition;            // transition(i, j): from i to j
     VectorXd probabilities;
@@ -87,9 +122,11 @@ public:
             predicted.push_back(mode.predicted);
         }
         now.combined_prediction = mixture(now.predicted_mode_probabilities, predicted);
+        if (z && conversion) now.converted = conversion->of(*z);
+        if (now.converted) R = now.converted->covariance;
         for (ModeStep &mode : now.modes) {
             mode.updated = mode.predicted;
-            if (z) update(mode, *z);
+            if (z) update(mode, now.converted ? now.converted->mean : *z);
             updated.push_back(mode.updated);
         }
         now.mode_probabilities = z ? weigh(now) : now.predicted_mode_probabilities;

@@ -38,6 +38,18 @@ static json object(const Estimate &estimate) {
     return {{"mean", list(estimate.mean)}, {"covariance", rows(estimate.covariance)}};
 }
 
+static Conversion conversion_of(const json &problem) {
+    Conversion conversion;
+    const json &measurement = problem.at("measurement"), &R = problem.at("R");
+    conversion.name = problem.at("filter").at("conversion");
+    conversion.range = measurement.at("components").at(0) == "range" ? 0 : 1;
+    conversion.bearing = 1 - conversion.range;
+    conversion.sensor = vector(measurement.at("sensor"));
+    conversion.range_variance = R.at(conversion.range).at(conversion.range);
+    conversion.bearing_variance = R.at(conversion.bearing).at(conversion.bearing);
+    return conversion;
+}
+
 // CHANGE HERE: your filter from a problem
 static Imm filter_of(const json &problem) {
     Imm imm;
@@ -49,6 +61,11 @@ static Imm filter_of(const json &problem) {
     const json &measurement = problem.at("measurement");
     if (measurement.at("kind") == "linear") {
         imm.measurement.matrix = matrix(measurement.at("H"));
+    } else if (problem.at("filter").at("kind") == "converted") {
+        imm.conversion = conversion_of(problem);
+        MatrixXd H = MatrixXd::Zero(2, problem.at("state").size());
+        for (int axis = 0; axis < 2; ++axis) H(axis, measurement.at("position").at(axis).get<int>()) = 1;
+        imm.measurement.matrix = H;
     } else {
         for (const json &component : measurement.at("components")) imm.measurement.is_bearing.push_back(component == "bearing");
         for (int axis = 0; axis < 2; ++axis) {
@@ -82,12 +99,17 @@ static json shown(int number, const Step &step, bool is_detected) {
         }
         modes.push_back(values);
     }
-    return {{"step", number},
-            {"predicted_mode_probabilities", list(step.predicted_mode_probabilities)},
-            {"modes", modes},
-            {"combined_prediction", object(step.combined_prediction)},
-            {"mode_probabilities", list(step.mode_probabilities)},
-            {"combined", object(step.combined)}};
+    json result = {{"step", number},
+                   {"predicted_mode_probabilities", list(step.predicted_mode_probabilities)},
+                   {"modes", modes},
+                   {"combined_prediction", object(step.combined_prediction)},
+                   {"mode_probabilities", list(step.mode_probabilities)},
+                   {"combined", object(step.combined)}};
+    if (step.converted) {
+        result["converted_measurement"] = list(step.converted->mean);
+        result["converted_covariance"] = rows(step.converted->covariance);
+    }
+    return result;
 }
 
 static json run(const json &problem) {
@@ -113,8 +135,8 @@ int main() {
         if (message.at("type") == "start") {
             const json &echo = message.at("echo");
             reply = {{"type", "ready"},
-                     {"name", "C++ example"},                  // CHANGE HERE
-                     {"kinds", {"kalman", "cubature-3"}},      // CHANGE HERE: which filters there are
+                     {"name", "C++ example"},                           // CHANGE HERE
+                     {"kinds", {"kalman", "cubature-3", "converted"}},  // CHANGE HERE: which filters there are
                      {"validates", false},
                      {"echo", list(matrix(echo.at("matrix")) * vector(echo.at("vector")))}};
         } else {

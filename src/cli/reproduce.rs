@@ -1,0 +1,252 @@
+//! `immaculate reproduce`: the papers' simulations beside what they publish, and the files that are written of them.
+//!
+//! After this file the reader knows what is run for which paper, and what each file of `--out` is.
+
+use super::{Done, Refusal, effort, json_text, papers, progress_bar, write_file};
+use clap::Args;
+use immaculate::paper::monte_carlo::Progress;
+use immaculate::paper::specification::Choices;
+use immaculate::paper::sustika2015::divergence;
+use immaculate::paper::{Effort, Paper};
+use immaculate::report;
+use serde_json::json;
+use std::path::{Path, PathBuf};
+
+#[derive(Args)]
+pub struct Reproduce {
+    /// The papers; all when none is given [possible: derbez2000, sustika2015, zhu2016, liu2017]
+    papers: Vec<Paper>,
+    /// The number of Monte-Carlo runs; the paper's own when not given
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=1_000_000))]
+    runs: Option<u64>,
+    /// The seed of the random numbers
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    seed: u64,
+    /// Choose an alternative for an open parameter and run that alone; may be given again (`immaculate choices` lists them)
+    #[arg(long = "set", value_name = "PARAMETER=ALTERNATIVE")]
+    choices: Vec<String>,
+    /// Leave out the runs of every open choice by itself
+    #[arg(long)]
+    brief: bool,
+    /// In place of these runs: scenario 3 of sustika2015, which varies the noise that the filters take for granted; with --out it
+    /// goes on from where it was interrupted
+    #[arg(long, conflicts_with = "brief")]
+    sweep: bool,
+    /// Write the results as JSON, and errors and mode probabilities over time as CSV and SVG, to this directory
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print JSON instead of tables
+    #[arg(long)]
+    json: bool,
+}
+
+/// Reruns the papers' simulations.
+pub fn run(arguments: &Reproduce) -> Result<Done, Refusal> {
+    let papers = papers(&arguments.papers);
+    let chosen = Choices::parse(&arguments.choices).map_err(Refusal::request)?;
+    if arguments.sweep {
+        return sweep(arguments, &papers, &chosen).map(Done::from);
+    }
+    check_that_some_paper_has(&papers, &chosen)?;
+    let effort = effort(arguments.runs, arguments.seed);
+    let plan = plan(arguments, &papers, &chosen)?;
+    if let Some(directory) = &arguments.out {
+        std::fs::create_dir_all(directory)
+            .map_err(|error| Refusal::Output(format!("{}: {error}", directory.display())))?;
+    }
+    let asks_for_cause = arguments.choices.is_empty() && papers.contains(&Paper::Sustika2015);
+    let runs_for_cause = effort.runs.unwrap_or(divergence::RUNS);
+    let mut total: usize = plan.iter().map(|planned| planned.choices.len() * planned.runs).sum();
+    if asks_for_cause {
+        total += divergence::SIMULATIONS.len() * runs_for_cause;
+    }
+    let bar = progress_bar(total as u64, "reproducing");
+    let advance: Progress = &|| bar.inc(1);
+    let mut text = String::new();
+    let mut values = Vec::new();
+    for planned in plan {
+        let (of_paper, value) = one_simulation(arguments, &planned, effort, advance)?;
+        values.push(value);
+        text.push_str(&of_paper);
+    }
+    let mut answer = json!({ "papers": values });
+    if asks_for_cause {
+        let rows = divergence::rows(runs_for_cause, effort.seed, advance).map_err(Refusal::request)?;
+        answer["divergence"] = json!({ "runs": runs_for_cause, "simulations": rows });
+        text.push_str(&report::divergence::text(&rows, runs_for_cause));
+        text.push('\n');
+        text.push_str(&conversions(arguments.out.as_deref())?);
+        text.push('\n');
+    }
+    bar.finish_and_clear();
+    if arguments.json {
+        return Ok(json_text(&answer).into());
+    }
+    text.push_str("What these figures say of the papers' claims: immaculate claims\n");
+    Ok(text.into())
+}
+
+/// A simulation, and each of its open choices by itself.
+struct Planned {
+    paper: Paper,
+    choices: Vec<Choices>,
+    runs: usize,
+}
+
+/// What is to be run.
+fn plan(arguments: &Reproduce, papers: &[Paper], chosen: &Choices) -> Result<Vec<Planned>, Refusal> {
+    let mut plan = Vec::new();
+    for &paper in papers {
+        let chosen = paper.specification().choices_of_this_paper(chosen);
+        for chosen in paper.simulations(&chosen) {
+            let simulation = paper.simulation(&chosen).map_err(Refusal::request)?;
+            let runs = effort(arguments.runs, arguments.seed).runs;
+            let mut choices = vec![chosen];
+            if !arguments.brief && arguments.choices.is_empty() {
+                choices.extend(paper.open_choices(&choices[0]));
+            }
+            plan.push(Planned {
+                paper,
+                choices,
+                runs: runs.unwrap_or_else(|| simulation.runs()),
+            });
+        }
+    }
+    Ok(plan)
+}
+
+/// Runs a simulation with its open choices: the text, and the same as JSON.
+fn one_simulation(
+    arguments: &Reproduce,
+    planned: &Planned,
+    effort: Effort,
+    advance: Progress,
+) -> Result<(String, serde_json::Value), Refusal> {
+    let paper = planned.paper;
+    let reproductions = planned
+        .choices
+        .iter()
+        .map(|choices| paper.reproduce(choices, effort, advance))
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(Refusal::request)?;
+    let (main, alternatives) = (&reproductions[0], &reproductions[1..]);
+    let comparisons = report::reproduction::published_and_computed(paper, main);
+    let value = json!({
+        "published_and_computed": comparisons,
+        "reproduction": main,
+        "alternatives": alternatives.iter().map(report::reproduction::errors_of).collect::<Vec<_>>(),
+    });
+    if let Some(directory) = &arguments.out {
+        write_files(directory, main, &value)?;
+    }
+    let mut text = report::reproduction::text(paper, main);
+    if !alternatives.is_empty() {
+        text.push('\n');
+        text.push_str(&report::reproduction::alternatives(paper, &reproductions));
+    }
+    text.push('\n');
+    Ok((text, value))
+}
+
+/// Where converted measurements can be trusted, as a table and, in a directory, as a figure.
+fn conversions(directory: Option<&Path>) -> Result<String, Refusal> {
+    if let Some(directory) = directory {
+        let figure = figure_of(report::conversion::figure())?;
+        write_file(&directory.join("sustika2015-conversions.svg"), &figure)?;
+    }
+    Ok(report::conversion::table())
+}
+
+/// Scenario 3 of sustika2015 in the place of the papers' runs.
+fn sweep(arguments: &Reproduce, papers: &[Paper], chosen: &Choices) -> Result<String, Refusal> {
+    if !arguments.papers.is_empty() && papers != [Paper::Sustika2015] {
+        return Err(Refusal::request("sustika2015 alone has a sweep"));
+    }
+    let effort = effort(arguments.runs, arguments.seed);
+    let bar = |length| progress_bar(length, "sweeping");
+    super::sweep::run(chosen, effort, arguments.out.as_deref(), arguments.json, bar)
+}
+
+/// A parameter that none of the papers has is a mistake; one that some have is set for these.
+fn check_that_some_paper_has(papers: &[Paper], choices: &Choices) -> Result<(), Refusal> {
+    for parameter in choices.parameters() {
+        let has = |paper: &Paper| paper.specification().parameters.iter().any(|p| p.name == parameter);
+        if !papers.iter().any(has) {
+            let of_paper = |paper: &Paper| {
+                let names: Vec<&str> = paper
+                    .specification()
+                    .parameters
+                    .iter()
+                    .map(|p| p.name.as_str())
+                    .collect();
+                format!("{} has {}", paper.key(), names.join(", "))
+            };
+            let known: Vec<String> = papers.iter().map(of_paper).collect();
+            return Err(Refusal::request(format!(
+                "there is no parameter `{parameter}`; {}",
+                known.join("; ")
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// A figure, or why it could not be drawn.
+fn figure_of(drawn: Result<String, report::figure::NotDrawn>) -> Result<String, Refusal> {
+    drawn.map_err(|error| Refusal::Output(error.to_string()))
+}
+
+/// What the names of a reproduction's files begin with: the paper, and the scenario where it has several.
+fn file_stem(reproduction: &immaculate::paper::result::Reproduction) -> String {
+    match reproduction.choices.chosen("scenario") {
+        Some(scenario) => format!("{}-{scenario}", reproduction.paper),
+        None => reproduction.paper.to_owned(),
+    }
+}
+
+/// The files of `reproduce --out`: everything as JSON, errors over time and mode probabilities as CSV and as figures.
+fn write_files(
+    directory: &Path,
+    reproduction: &immaculate::paper::result::Reproduction,
+    value: &serde_json::Value,
+) -> Result<(), Refusal> {
+    let paper = file_stem(reproduction);
+    let mut files = vec![
+        (format!("{paper}.json"), json_text(value)),
+        (
+            format!("{paper}-errors.csv"),
+            report::reproduction::errors_csv(reproduction),
+        ),
+        (
+            format!("{paper}-mode-probabilities.csv"),
+            report::reproduction::mode_probabilities_csv(reproduction),
+        ),
+        (
+            format!("{paper}-errors.svg"),
+            figure_of(report::figure::errors(reproduction))?,
+        ),
+        (
+            format!("{paper}-mode-probabilities.svg"),
+            figure_of(report::figure::mode_probabilities(reproduction))?,
+        ),
+    ];
+    if let Some(first_run) = &reproduction.first_run {
+        files.push((
+            format!("{paper}-path.svg"),
+            figure_of(report::figure::path(reproduction, first_run))?,
+        ));
+        files.push((
+            format!("{paper}-path.csv"),
+            report::reproduction::path_csv(reproduction, first_run),
+        ));
+    }
+    if paper == Paper::Derbez2000.key() {
+        let figures = report::long_term::figures_1_and_2(reproduction.seed);
+        files.push((format!("{paper}-figures-1-and-2.svg"), figure_of(figures)?));
+    }
+    for (name, content) in files {
+        let path = directory.join(name);
+        write_file(&path, &content)?;
+    }
+    Ok(())
+}
