@@ -61,11 +61,7 @@ const EXPECTATIONS: [(&str, usize, &str); 12] = [
         1,
         "the rule's parameters are part of the program",
     ),
-    (
-        "src/paper/sustika2015/operations.rs",
-        1,
-        "the defaults can be chosen",
-    ),
+    ("src/paper/sustika2015/operations.rs", 1, "the defaults can be chosen"),
     (
         "src/paper/sustika2015/truth.rs",
         1,
