@@ -131,10 +131,10 @@ pub fn difficult_jacobian() -> Judgement {
 pub fn kalman_needs_modification() -> Judgement {
     // Small integers whose squares have a sum that is a square: every double is exact.
     let state = at(&3.0, &4.0);
-    let seen = |factor: f64| range_and_bearing(&(state * factor));
-    let [here, opposite, nowhere] = [1.0, -1.0, 0.0].map(seen);
-    let is_odd = opposite[0] == -here[0];
-    let is_affine = here[0] + opposite[0] == 2.0 * nowhere[0];
+    let range = |factor: f64| Rational::from_f64(range_and_bearing(&(state * factor))[0]);
+    let [here, opposite, nowhere] = [1.0, -1.0, 0.0].map(range);
+    let is_odd = opposite == -here.clone();
+    let is_affine = here.clone() + opposite.clone() == Rational::integer(2) * nowhere.clone();
     let bearing_doubles = Enclosure::with_precision(BITS, || {
         let state = at(&Enclosure::integer(3), &Enclosure::integer(4));
         let [once, twice] = [1, 2].map(|factor| range_and_bearing(&(&state * Enclosure::integer(factor)))[1].clone());
@@ -144,9 +144,9 @@ pub fn kalman_needs_modification() -> Judgement {
         "Exact: HX has opposite values at X and −X, and (3) the same range, {} m at (3, 4) and {} m at (−3, −4). Nor is there an H and a \
          constant: the mean of these two is then what is seen at the radar, {} m. {}, where HX would double. So there is no such H, and \
          the filter needs another measurement, (20)-(26), or another update, (27)-(36); nothing else of it has to change.",
-        here[0],
-        opposite[0],
-        nowhere[0],
+        here,
+        opposite,
+        nowhere,
         if bearing_doubles {
             "The bearing of 2X may be twice that of X"
         } else {
