@@ -5,8 +5,8 @@
 //!
 //! The paper's programs are not printed, and it gives seconds, not operations. What is counted is one cycle of this crate's equations at
 //! the paper's setting, from the state before to the combined state after; what the paper does not compute (the combined prediction, the
-//! likelihood of all modes together) is left out. A point is drawn as (27)-(29) have it: a column of the square root, scaled and added to the
-//! mean; what stands above the diagonal of a Cholesky factor, and the place of the radar, are no numbers under any convention.
+//! likelihood of all modes together) is left out. A point is drawn as (27)-(29) have it: a column of the square root, scaled and added to
+//! the mean; what stands above the diagonal of a Cholesky factor, and the place of the radar, are no numbers under any convention.
 
 use super::contestants::Bearings;
 use super::{Choices, scenario};
