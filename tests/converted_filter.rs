@@ -412,7 +412,8 @@ fn a_filter_mixes_index_by_index_wherever_it_mixes() {
     }
 }
 
-/// Property: at the negative x-axis each of the three places of a plain bearing has its own effect, and a filter with plain bearings has all.
+/// Property: at the negative x-axis each of the three places of a plain bearing has its own effect, and a filter with plain bearings has
+/// all.
 #[test]
 fn plain_bearings_are_plain_in_all_three_places() {
     let (problem, mut initial) = six_states();
