@@ -7,11 +7,15 @@
 //! - [`scenario`](mod@scenario): a simulation with every choice made, and a run of it;
 //! - [`sweep`]: scenario 3, the filters' noise parameters varied one at a time;
 //! - [`divergence`]: whether the unscented filter diverges because of the noises or because of the cut of the bearings;
+//! - [`outcome`]: what a run shows of both filters, and of the second with bearings that are never wrapped;
+//! - [`claims`]: the claims, each with its judge;
 //! - [`journal`]: the finished points of a sweep, in a file, from which it goes on after an interruption.
 
+pub mod claims;
 pub mod contestants;
 pub mod divergence;
 pub mod journal;
+pub mod outcome;
 pub mod scenario;
 pub mod sweep;
 pub mod truth;
