@@ -10,7 +10,7 @@ use super::manoeuvring::gaps;
 use super::straight::wrapped_and_not;
 use crate::paper::specification::Specification;
 use crate::paper::verdict::{
-    Judgement, Verdict, all_below_zero, all_of, below_zero_whichever, in_words, proven_if, sign_of,
+    Judgement, Verdict, all_below_zero, all_of, below_zero_whichever, in_words, proven_if, sign_of, whichever,
 };
 use crate::statistics::Estimate;
 use crate::statistics::estimate::figure;
@@ -42,11 +42,7 @@ pub fn a_little_better_without_mismatch(s: &Specification, runs: &Evidence) -> J
         let not_much = opposite(less_limit(part(path), -LITTLE));
         all_below_zero(&[unscented_less_converted(path), not_much])
     };
-    let verdict = all_of(&[
-        at(0),
-        crate::paper::verdict::whichever(&WINDOWS.map(at)),
-        proven_if(in_tables),
-    ]);
+    let verdict = all_of(&[at(0), whichever(&WINDOWS.map(at)), proven_if(in_tables)]);
     s.judgement("sustika2015-a-little-better-without-mismatch", verdict, evidence)
 }
 
@@ -97,10 +93,9 @@ pub fn bad_in_manoeuvres(s: &Specification, runs: &Evidence) -> Judgement {
         least(CONVERTED, margins[0]).min(least(WRAPPED, margins[1]))
     });
     let evidence = format!(
-        "Scenario 2, table 5: IMM-CMKF is {:.4} % below the limit of {} %, IMM-UKF {:.4} % above. In the runs, with the standard error that \
+        "Scenario 2, table 5: IMM-CMKF is {:.4} % below the limit of {GOOD_FIT_ERROR} %, IMM-UKF {:.4} % above. In the runs, with the standard error that \
          {RUNS} of them leave: {}. The smaller of the two published margins is {} of such standard errors.",
         margins[0],
-        figure(GOOD_FIT_ERROR),
         margins[1],
         clauses(&WINDOWS, |path| format!(
             "IMM-CMKF {}, IMM-UKF {} wrapped and {} never wrapped",
@@ -141,9 +136,8 @@ pub fn suitable(s: &Specification, runs: &Evidence) -> Judgement {
         }
     };
     let evidence = format!(
-        "Not surely below {} %: {}. Error certainly larger than that of wrapped IMM-UKF: {}. The operations are those of \
+        "Not surely below {GOOD_FIT_ERROR} %: {}. Error certainly larger than that of wrapped IMM-UKF: {}. The operations are those of \
          sustika2015-execution-time. The data of the paper are simulated; there is no radar in it.",
-        figure(GOOD_FIT_ERROR),
         listed(&above),
         listed(&larger),
     );

@@ -234,7 +234,18 @@ impl Runs {
         ratio(&self.pairs(filter, other, filter))
     }
 
-    /// The root mean square position error of a filter in the steps of constant acceleration, and in the others, m; and their difference.
+    /// That ratio less the same of two other simulations with the same random numbers.
+    pub fn over_less(&self, over: &Self, others: [&Self; 2], filter: usize) -> Estimate {
+        let (here, terms) = ratio_terms(&self.pairs(filter, over, filter));
+        let (there, other_terms) = ratio_terms(&others[0].pairs(filter, others[1], filter));
+        let terms = terms.iter().zip(&other_terms).map(|(a, b)| a - b);
+        Estimate {
+            value: here - there,
+            standard_error: mean(&terms.collect::<Vec<f64>>()).standard_error,
+        }
+    }
+
+    /// The root mean square position error of a filter in the steps of constant acceleration less that in the others, m.
     pub fn manoeuvre_less_rest(&self, filter: usize) -> Estimate {
         let squares = |kind: usize| {
             let tracks = self.0.iter().filter_map(|run| run.filters[filter]);
@@ -249,13 +260,18 @@ impl Runs {
     }
 }
 
-/// The ratio of two means, with its standard error to first order.
-fn ratio(pairs: &[(f64, f64)]) -> Estimate {
+/// The ratio of two means, and what each run adds to it to first order.
+fn ratio_terms(pairs: &[(f64, f64)]) -> (f64, Vec<f64>) {
     let count = pairs.len() as f64;
     let above = pairs.iter().map(|pair| pair.0).sum::<f64>() / count;
     let below = pairs.iter().map(|pair| pair.1).sum::<f64>() / count;
     let value = above / below;
-    let terms: Vec<f64> = pairs.iter().map(|(a, b)| (a - value * b) / below).collect();
+    (value, pairs.iter().map(|(a, b)| (a - value * b) / below).collect())
+}
+
+/// The ratio of two means, with its standard error to first order.
+fn ratio(pairs: &[(f64, f64)]) -> Estimate {
+    let (value, terms) = ratio_terms(pairs);
     Estimate {
         value,
         standard_error: mean(&terms).standard_error,

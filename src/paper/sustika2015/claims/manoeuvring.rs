@@ -56,16 +56,10 @@ pub fn large_error_in_manoeuvres(s: &Specification, runs: &Evidence) -> Judgemen
     s.judgement("sustika2015-large-error-in-manoeuvres", all_of(&verdicts), evidence)
 }
 
-/// How many times larger the errors of scenario 2 are with manoeuvres than without, each beside scenario 1: the ratio of the ratios less one.
-/// The two trajectories have the same noises on their measurements; that is left out of account, which makes the figure less certain than it is.
+/// Scenario 2 over scenario 1 with manoeuvres, less the same without.
 fn hurts_more(runs: &Evidence, path: usize, filter: usize) -> Estimate {
-    let ratio = |path: usize| runs.scenarios[1][path].over(&runs.scenarios[0][path], filter);
-    let (with, without) = (ratio(path), ratio(0));
-    let squares = with.standard_error * with.standard_error + without.standard_error * without.standard_error;
-    Estimate {
-        value: with.value - without.value,
-        standard_error: squares.sqrt(),
-    }
+    let [matched, mismatched] = &runs.scenarios;
+    mismatched[path].over_less(&matched[path], [&mismatched[0], &matched[0]], filter)
 }
 
 pub fn mismatch_hurts_manoeuvres(s: &Specification, runs: &Evidence) -> Judgement {

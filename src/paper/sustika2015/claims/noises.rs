@@ -3,18 +3,18 @@
 //! After this file the reader knows at how many noises either filter is better, and that no run diverges whose bearings are wrapped.
 
 use super::super::divergence::Tally;
+use super::super::outcome::Outcome;
 use super::super::sweep::{Point, Setting};
 use super::super::{DEGREE, DIVERGENT_FIT_ERROR, GOOD_FIT_ERROR, RUNS};
 use super::evidence::{
     CONVERTED, Evidence, PLAIN, Runs, WINDOWS, WRAPPED, clauses, is_matched, less_limit, setting_in_words, words,
 };
 use crate::paper::specification::Specification;
-use crate::paper::verdict::{Judgement, Verdict, all_below_zero, confirmed_if, in_words, sign_of, whichever};
+use crate::paper::verdict::{Judgement, Verdict, all_below_zero, confirmed_if, sign_of, whichever};
 use crate::statistics::Estimate;
 use crate::statistics::estimate::{figure, mean};
 use crate::statistics::fit_error::FitForm;
 use std::cmp::Ordering;
-use std::fmt::Write;
 
 /// A figure of a setting.
 type At = (Setting, Estimate);
@@ -121,15 +121,21 @@ pub fn mismatch_no_problem(s: &Specification, runs: &Evidence) -> Judgement {
     };
     let most = |filter: usize| at_in_words(greatest(&of(filter), |fit| fit.value), " %");
     let evidence = format!(
-        "{}: the greatest mean PFE is {} for IMM-CMKF, {} for wrapped IMM-UKF and {} for the never wrapped one. The limit is {} %.",
+        "{}: the greatest mean PFE is {} for IMM-CMKF, {} for wrapped IMM-UKF and {} for the never wrapped one. The limit is {GOOD_FIT_ERROR} %.",
         runs.sweep_in_words(),
         most(CONVERTED),
         most(WRAPPED),
         most(PLAIN),
-        figure(GOOD_FIT_ERROR),
     );
     let verdict = whichever(&[below([CONVERTED, WRAPPED]), below([CONVERTED, PLAIN])]);
     s.judgement("sustika2015-mismatch-no-problem", verdict, evidence)
+}
+
+/// Whether a filter diverges in a run: by the joint norm. The root of the sum of squares also exceeds the limit where the target stays near
+/// an axis, so that a small error is a large part of a small coordinate.
+fn diverges(run: &Outcome, filter: usize) -> bool {
+    run.fit(FitForm::JointNorm, filter)
+        .is_some_and(|fit| fit > DIVERGENT_FIT_ERROR)
 }
 
 /// What the means over as many runs as the paper's show of one filter.
@@ -147,63 +153,67 @@ struct Blocks {
 
 fn blocks(swept: &[(Setting, Runs)], filter: usize) -> Blocks {
     let mut blocks = Blocks::default();
+    let fit = |run: &Outcome| run.fit(FitForm::RootSumSquare, filter);
     for (_, runs) in swept {
-        let fits: Vec<f64> = runs
-            .0
-            .iter()
-            .filter_map(|run| run.fit(FitForm::RootSumSquare, filter))
-            .collect();
-        for block in fits.chunks(RUNS) {
+        for block in runs.0.chunks(RUNS) {
+            let divergent = block.iter().filter(|run| diverges(run, filter)).count();
+            let all: Vec<f64> = block.iter().filter_map(fit).collect();
             let rest: Vec<f64> = block
                 .iter()
-                .copied()
-                .filter(|fit| *fit <= DIVERGENT_FIT_ERROR)
+                .filter(|run| !diverges(run, filter))
+                .filter_map(fit)
                 .collect();
-            let has_divergence = rest.len() < block.len();
-            let is_made_bad = mean(block).value > GOOD_FIT_ERROR && mean(&rest).value < GOOD_FIT_ERROR;
+            let is_made_bad = mean(&all).value > GOOD_FIT_ERROR && mean(&rest).value < GOOD_FIT_ERROR;
             blocks.means += 1;
-            blocks.divergent += block.len() - rest.len();
-            blocks.with_divergence += usize::from(has_divergence);
-            blocks.made_bad += usize::from(has_divergence && is_made_bad);
+            blocks.divergent += divergent;
+            blocks.with_divergence += usize::from(divergent > 0);
+            blocks.made_bad += usize::from(is_made_bad);
         }
     }
     blocks
 }
 
+impl Blocks {
+    fn words(&self) -> String {
+        let Self {
+            means,
+            with_divergence,
+            made_bad,
+            divergent,
+        } = self;
+        if *divergent == 0 {
+            return "none".to_owned();
+        }
+        format!(
+            "{divergent} runs, in {with_divergence} of {means} means over {RUNS} runs, of which {made_bad} exceed {GOOD_FIT_ERROR} % with and not \
+             without them"
+        )
+    }
+}
+
 pub fn divergence(s: &Specification, runs: &Evidence) -> Judgement {
     let of = |filter: usize| WINDOWS.map(|path| blocks(&runs.swept[path], filter));
-    let in_words = |blocks: &Blocks| {
-        format!(
-            "{} divergent runs; of {} means over {RUNS} runs {} contain one, and {} are above {} % with it that are below without",
-            blocks.divergent,
-            blocks.means,
-            blocks.with_divergence,
-            blocks.made_bad,
-            figure(GOOD_FIT_ERROR)
-        )
-    };
     let [wrapped, plain] = [of(WRAPPED), of(PLAIN)];
     let evidence = format!(
-        "{}, IMM-UKF, divergent where the PFE of a run exceeds {} %. Never wrapped: {}. Wrapped, on the same measurements: {}.",
+        "{}. Runs of IMM-UKF that diverge, with a PFE above {DIVERGENT_FIT_ERROR} % by the joint norm: never wrapped, {}; wrapped, on the same \
+         measurements, {}.",
         runs.sweep_in_words(),
-        figure(DIVERGENT_FIT_ERROR),
-        clauses(&WINDOWS, |path| in_words(&plain[path - 1])),
-        clauses(&WINDOWS, |path| in_words(&wrapped[path - 1])),
+        clauses(&WINDOWS, |path| plain[path - 1].words()),
+        clauses(&WINDOWS, |path| wrapped[path - 1].words()),
     );
     let is_so = |blocks: &[Blocks; 2]| confirmed_if(blocks.iter().any(|blocks| blocks.made_bad > 0));
     let verdict = whichever(&[is_so(&plain), is_so(&wrapped)]);
     s.judgement("sustika2015-divergence", verdict, evidence)
 }
 
-/// A tally of the runs of several simulations.
-fn tally<'a>(simulations: impl Iterator<Item = &'a Runs>) -> Tally {
+/// A tally of the runs of several simulations, divergent by one of the forms.
+fn tally<'a>(simulations: impl Iterator<Item = &'a Runs>, form: FitForm) -> Tally {
     let mut runs = 0;
-    let points: Vec<Point> = simulations
-        .map(|simulation| {
-            runs = simulation.0.len();
-            Point::of(&simulation.0, FitForm::RootSumSquare)
-        })
-        .collect();
+    let of = |simulation: &Runs| {
+        runs = simulation.0.len();
+        Point::of(&simulation.0, form)
+    };
+    let points: Vec<Point> = simulations.map(of).collect();
     Tally::of(points.iter(), runs)
 }
 
@@ -211,78 +221,61 @@ fn tally<'a>(simulations: impl Iterator<Item = &'a Runs>) -> Tally {
 fn without_jump(scenarios: &[[Runs; 3]; 2]) -> String {
     let all = scenarios.iter().flatten().flat_map(|runs| &runs.0);
     let quiet = || all.clone().filter(|run| !run.jumps);
-    let is_divergent = |run: &&super::super::outcome::Outcome| {
-        run.fit(FitForm::RootSumSquare, PLAIN)
-            .is_some_and(|fit| fit > DIVERGENT_FIT_ERROR)
-    };
-    let farthest = quiet().filter(is_divergent).map(|run| run.to_cut).fold(0.0, f64::max);
+    let divergent = || quiet().filter(|run| diverges(run, PLAIN));
     let apart = |least: f64| {
-        quiet()
-            .filter(|run| run.to_cut >= least)
-            .map(|run| run.apart)
-            .fold(0.0, f64::max)
+        let far = quiet().filter(|run| run.to_cut >= least);
+        far.map(|run| run.apart).fold(0.0, f64::max)
     };
-    let mut text = format!(
-        "In {} runs without a jump the two unscented filters are at most {} m apart",
+    let nearest = divergent().map(|run| run.to_cut).fold(0.0, f64::max);
+    let words = match divergent().count() {
+        0 => String::new(),
+        count => format!(
+            "; the {count} of them that diverge have a measured bearing within {}° of the negative x-axis: there the estimate crosses it",
+            figure(nearest / DEGREE)
+        ),
+    };
+    format!(
+        "In the {} runs of these without a jump, the two unscented filters are at most {} m apart, and {} m where no measured bearing comes \
+         within {AWAY_DEGREES}° of the negative x-axis{words}.",
         quiet().count(),
-        figure(apart(0.0))
-    );
-    for degrees in [5.0, 20.0] {
-        let _ = write!(
-            text,
-            ", {} m where no measured bearing comes within {degrees}° of the negative x-axis",
-            figure(apart(degrees * DEGREE))
-        );
-    }
-    if farthest > 0.0 {
-        let _ = write!(
-            text,
-            "; those that diverge without a jump come within {}° of it",
-            figure(farthest / DEGREE)
-        );
-    }
-    text
+        figure(apart(0.0)),
+        figure(apart(AWAY_DEGREES * DEGREE)),
+    )
 }
 
+/// Away from the negative x-axis, degrees: five times the deviation of a measured bearing.
+const AWAY_DEGREES: f64 = 5.0;
+
 pub fn cause_of_divergence(s: &Specification, runs: &Evidence) -> Judgement {
-    let scenarios = [1, 2].map(|scenario| tally(runs.scenarios[scenario - 1].iter()));
-    let sweeps = tally(runs.swept.iter().flatten().map(|(_, runs)| runs));
-    let mut evidence = String::new();
-    for (scenario, tally) in (1..).zip(&scenarios) {
-        let _ = write!(evidence, "Scenario {scenario}, three trajectories: {} ", tally.cause());
-    }
-    let joint = |filter: usize| {
-        let all = runs.scenarios.iter().flatten().flat_map(|runs| &runs.0);
-        let fits = all.filter_map(|run| run.fit(FitForm::JointNorm, filter));
-        fits.filter(|fit| *fit > DIVERGENT_FIT_ERROR).count().to_string()
+    let scenarios = || runs.scenarios.iter().flatten();
+    let both = tally(scenarios(), FitForm::JointNorm);
+    let matched = tally(runs.scenarios[0].iter(), FitForm::JointNorm);
+    let sweeps = tally(runs.swept.iter().flatten().map(|(_, runs)| runs), FitForm::JointNorm);
+    let by_squares = tally(scenarios(), FitForm::RootSumSquare);
+    let paired = |scenario: usize, path: usize| {
+        let runs = &runs.scenarios[scenario - 1][path];
+        let [wrapped, plain] = [WRAPPED, PLAIN].map(|unscented| runs.difference(unscented, CONVERTED));
+        format!("{} and {}", words(wrapped, " %"), words(plain, " %"))
     };
-    let both = |scenario: usize, path: usize| {
-        let runs = &runs.scenarios[scenario][path];
-        format!(
-            "{} wrapped, {} never wrapped",
-            words(runs.difference(WRAPPED, CONVERTED), " %"),
-            in_words(runs.difference(PLAIN, CONVERTED), "%")
-        )
-    };
-    let _ = write!(
-        evidence,
-        "{}, three trajectories: {} {}. PFE of IMM-UKF less that of IMM-CMKF: scenario 1 {}; scenario 2 {}. (Where the target is near an axis \
-         most of the time, a small error is a large part of that coordinate; by the joint norm {} runs of scenarios 1 and 2 diverge, of \
-         IMM-CMKF, IMM-UKF wrapped and never wrapped.)",
+    let evidence = format!(
+        "A run diverges where its PFE exceeds {DIVERGENT_FIT_ERROR} % by the joint norm. Scenarios 1 and 2 on three trajectories: {} {} of the \
+         never wrapped ones are in scenario 1, where the noises match. {} {}, three trajectories: {} PFE of IMM-UKF less that of IMM-CMKF, \
+         wrapped and never wrapped: scenario 1, {}; scenario 2, {}. (By the root of the sum of squares {} runs of scenarios 1 and 2 exceed \
+         {DIVERGENT_FIT_ERROR} %, of IMM-CMKF, IMM-UKF wrapped and never wrapped: it is also large where a coordinate of the target is small.)",
+        both.cause(),
+        matched.divergent[PLAIN],
+        without_jump(&runs.scenarios),
         runs.sweep_in_words(),
         sweeps.cause(),
-        without_jump(&runs.scenarios),
-        clauses(&[0, 1, 2], |path| both(0, path)),
-        clauses(&[0, 1, 2], |path| both(1, path)),
-        [CONVERTED, WRAPPED, PLAIN].map(joint).join(", "),
+        clauses(&[0, 1, 2], |path| paired(1, path)),
+        clauses(&[0, 1, 2], |path| paired(2, path)),
+        by_squares.divergent.map(|count| count.to_string()).join(", "),
     );
-    // The cut is the cause where wrapping ends it, and the mismatch is not where there is divergence without one.
-    let [matched, mismatched] = scenarios.map(|tally| tally.divergent);
-    let [wrapped, plain] =
-        [WRAPPED, PLAIN].map(|filter| matched[filter] + mismatched[filter] + sweeps.divergent[filter]);
-    let verdict = if plain > 0 && 10 * wrapped <= plain && matched[PLAIN] > 0 {
+    // The cut is the cause where wrapping ends it; the mismatch is not, where runs diverge without one.
+    let [_, wrapped, plain] = [0, 1, 2].map(|filter| both.divergent[filter] + sweeps.divergent[filter]);
+    let verdict = if matched.divergent[PLAIN] > 0 && 10 * wrapped <= plain {
         Verdict::Refuted
-    } else if plain > 0 && wrapped >= plain && matched[WRAPPED] == 0 {
+    } else if plain > 0 && wrapped >= plain && matched.divergent[WRAPPED] == 0 {
         Verdict::Confirmed
     } else {
         Verdict::Undecided
