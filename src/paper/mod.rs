@@ -172,7 +172,7 @@ impl Paper {
     pub fn judge(self, effort: Effort, progress: Progress) -> Result<Vec<Judgement>, InvalidChoice> {
         match self {
             Self::Derbez2000 => derbez2000::claims::judge(effort, progress),
-            Self::Sustika2015 => Ok(Vec::new()),
+            Self::Sustika2015 => sustika2015::claims::judge(effort, progress),
             Self::Zhu2016 => zhu2016::claims::judge(effort, progress),
             Self::Liu2017 => liu2017::claims::judge(effort, progress),
         }

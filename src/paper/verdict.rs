@@ -116,6 +116,26 @@ pub fn all_below_zero(differences: &[Estimate]) -> Verdict {
     }
 }
 
+/// The verdict where it was not published which of several is meant: theirs if they agree; not reproducible when one is confirmed and another
+/// refuted, so that what was not published decides.
+pub fn whichever(verdicts: &[Verdict]) -> Verdict {
+    let (confirmed, refuted) = (
+        verdicts.contains(&Verdict::Confirmed),
+        verdicts.contains(&Verdict::Refuted),
+    );
+    match verdicts.first() {
+        Some(first) if verdicts.iter().all(|verdict| verdict == first) => *first,
+        _ if confirmed && refuted => Verdict::NotReproducible,
+        _ => Verdict::Undecided,
+    }
+}
+
+/// The verdict on "the first is smaller" where it was not published which of the differences first − second is meant.
+pub fn below_zero_whichever(differences: &[Estimate]) -> Verdict {
+    let each = differences.iter().map(|difference| all_below_zero(&[*difference]));
+    whichever(&each.collect::<Vec<Verdict>>())
+}
+
 /// Proven or refuted, by arithmetic.
 pub fn proven_if(holds: bool) -> Verdict {
     if holds { Verdict::Proven } else { Verdict::Refuted }
@@ -143,9 +163,9 @@ pub fn better_by_a_thousandth(difference: Estimate, error: Estimate) -> Verdict 
 /// The least part of an error that counts as a difference between filters: a thousandth, a tenth of the last digit that is published.
 pub const RELEVANT: f64 = 1e-3;
 
-/// The verdict on several of which all must hold: refuted if one is, undecided if one is, else the first.
+/// The verdict on several of which all must hold: refuted if one is, undecided if one is, not reproducible if one is, else the first.
 pub fn all_of(verdicts: &[Verdict]) -> Verdict {
-    for decisive in [Verdict::Refuted, Verdict::Undecided] {
+    for decisive in [Verdict::Refuted, Verdict::Undecided, Verdict::NotReproducible] {
         if verdicts.contains(&decisive) {
             return decisive;
         }

@@ -87,6 +87,13 @@ impl Scenario {
         run.fit_error = Some(fit_error(self.fit_form, &run.errors, truth));
         run
     }
+
+    /// The percentage fit error of a run in every form; none when it did not come to its end.
+    pub fn fit_errors(&self, run: &Run, draw: &Draw) -> Option<[f64; FitForm::ALL.len()]> {
+        let truth = &draw.truth[self.first_filtered()..];
+        let is_complete = run.failure.is_none();
+        is_complete.then(|| FitForm::ALL.map(|form| fit_error(form, &run.errors, truth)))
+    }
 }
 
 /// The percentage fit error of a run, from the errors of [x, ẋ, y, ẏ] and the true states.

@@ -5,16 +5,16 @@
 //! so that a difference between filters is that of the runs, one by one. A run is called divergent when its percentage fit error exceeds
 //! [`DIVERGENT_FIT_ERROR`], and its measured bearings jump when two that follow each other differ by more than π.
 
-use super::contestants::{Bearings, Setup};
+use super::contestants::Setup;
 use super::journal::{BadJournal, Header, Journal};
+use super::outcome::{Outcome, outcomes};
 use super::scenario::Scenario;
-use super::truth::bearing_jumps;
 use super::{DEGREE, DIVERGENT_FIT_ERROR, SWEPT_BEARING_DEGREES, SWEPT_NOISE_DENSITIES};
 use crate::paper::monte_carlo::Progress;
 use crate::paper::specification::{Choices, InvalidChoice};
 use crate::statistics::Estimate;
 use crate::statistics::estimate::mean;
-use rayon::prelude::*;
+use crate::statistics::fit_error::FitForm;
 use serde::Serialize;
 use std::path::Path;
 
@@ -145,41 +145,28 @@ pub struct Point {
     pub plain_less_converted: Estimate,
 }
 
-/// One run: whether its measured bearings jump, and each filter's fit error; none where a step could not be computed.
-type Outcome = (bool, [Option<f64>; 3]);
-
 /// The runs of a scenario with [`FILTERS`] in the place of its own filters.
 pub fn point(scenario: &Scenario, runs: usize, seed: u64, progress: Progress) -> Point {
-    let setup = &scenario.setup;
-    let contestants = [
-        setup.converted(),
-        setup.unscented(Bearings::Wrapped),
-        setup.unscented(Bearings::Plain),
-    ];
-    let outcomes: Vec<Outcome> = (0..runs)
-        .into_par_iter()
-        .map(|run| {
-            let draw = scenario.trajectory.draw(run, seed);
-            let fits = contestants
-                .each_ref()
-                .map(|contestant| scenario.track(contestant, &draw).fit_error);
-            progress();
-            (bearing_jumps(&draw.measurements) > 0, fits)
-        })
-        .collect();
-    Point {
-        runs_with_jump: outcomes.iter().filter(|(jumps, _)| *jumps).count(),
-        fits: [0, 1, 2].map(|filter| fit(&outcomes, filter)),
-        unscented_less_converted: difference(&outcomes, 1, 0),
-        plain_less_converted: difference(&outcomes, 2, 0),
+    Point::of(&outcomes(scenario, runs, seed, progress), scenario.fit_form)
+}
+
+impl Point {
+    /// What the outcomes show.
+    pub fn of(outcomes: &[Outcome], form: FitForm) -> Self {
+        Self {
+            runs_with_jump: outcomes.iter().filter(|outcome| outcome.jumps).count(),
+            fits: [0, 1, 2].map(|filter| fit(outcomes, form, filter)),
+            unscented_less_converted: difference(outcomes, form, 1, 0),
+            plain_less_converted: difference(outcomes, form, 2, 0),
+        }
     }
 }
 
 /// What the outcomes show of one filter.
-fn fit(outcomes: &[Outcome], filter: usize) -> Fit {
+fn fit(outcomes: &[Outcome], form: FitForm, filter: usize) -> Fit {
     let completed = outcomes
         .iter()
-        .filter_map(|(jumps, fits)| Some((*jumps, fits[filter]?)));
+        .filter_map(|outcome| Some((outcome.jumps, outcome.fit(form, filter)?)));
     let fits: Vec<f64> = completed.clone().map(|(_, fit)| fit).collect();
     let divergent = || completed.clone().filter(|(_, fit)| *fit > DIVERGENT_FIT_ERROR);
     Fit {
@@ -192,8 +179,8 @@ fn fit(outcomes: &[Outcome], filter: usize) -> Fit {
 }
 
 /// The mean over runs of one filter's fit error less another's.
-fn difference(outcomes: &[Outcome], a: usize, b: usize) -> Estimate {
-    let of_run = |(_, fits): &Outcome| Some(fits[a]? - fits[b]?);
+fn difference(outcomes: &[Outcome], form: FitForm, a: usize, b: usize) -> Estimate {
+    let of_run = |outcome: &Outcome| Some(outcome.fit(form, a)? - outcome.fit(form, b)?);
     mean(&outcomes.iter().filter_map(of_run).collect::<Vec<f64>>())
 }
 
@@ -248,7 +235,7 @@ impl Sweep {
     }
 
     /// The scenario of a setting.
-    fn scenario(&self, setting: &Setting) -> Scenario {
+    pub fn scenario(&self, setting: &Setting) -> Scenario {
         let scenario = match setting.trajectory {
             Trajectory::Straight => &self.straight,
             Trajectory::Manoeuvring => &self.manoeuvring,

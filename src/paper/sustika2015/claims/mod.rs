@@ -1,0 +1,58 @@
+//! The claims of sustika2015, each with its judge.
+//!
+//! After this folder the reader knows what is left of the paper's comparison: which filter is better where, by how much and how surely, and
+//! what made the unscented one diverge. The claims are in `spec/sustika2015/claims.toml`, in the same order; every judge computes its
+//! evidence and is called once in [`judge`].
+//!
+//! - [`evidence`]: the runs that the judges share, and how two filters are compared;
+//! - [`straight`]: section 5.1, scenarios 1 and 2 without manoeuvres;
+//! - [`manoeuvring`]: section 5.2, the same with manoeuvres;
+//! - [`noises`]: scenario 3, and the cause of the divergence;
+//! - [`conclusion`]: section 6;
+//! - [`reachable`]: whether anything gives tables 4 and 5.
+
+mod conclusion;
+mod evidence;
+mod manoeuvring;
+mod noises;
+mod reachable;
+mod straight;
+
+use crate::paper::Effort;
+use crate::paper::monte_carlo::Progress;
+use crate::paper::specification::{InvalidChoice, sustika2015 as specification};
+use crate::paper::verdict::Judgement;
+use evidence::Evidence;
+
+/// Judges every claim.
+///
+/// # Errors
+///
+/// [`InvalidChoice`] when the specification lacks an alternative that a judge asks for.
+pub fn judge(effort: Effort, progress: Progress) -> Result<Vec<Judgement>, InvalidChoice> {
+    let s = specification();
+    let runs = Evidence::new(effort, progress)?;
+    Ok(vec![
+        manoeuvring::better_when_manoeuvring(s, &runs),
+        noises::more_robust(s, &runs),
+        // difficult-jacobian, kalman-needs-modification, exact-moments
+        straight::better_without_mismatch(s, &runs),
+        straight::better_on_all_scenarios(s, &runs),
+        straight::below_three_per_cent(s, &runs),
+        noises::no_difference_without_manoeuvre(s, &runs),
+        noises::mismatch_no_problem(s, &runs),
+        manoeuvring::large_error_in_manoeuvres(s, &runs),
+        manoeuvring::mismatch_hurts_manoeuvres(s, &runs),
+        manoeuvring::larger_error_in_figure_3(s, &runs),
+        manoeuvring::almost_the_same(s, &runs),
+        manoeuvring::better_in_scenario_2(s, &runs),
+        noises::divergence(s, &runs),
+        noises::cause_of_divergence(s, &runs),
+        // execution-time, no-linearisation
+        conclusion::a_little_better_without_mismatch(s, &runs),
+        conclusion::better_with_mismatch(s, &runs),
+        conclusion::bad_in_manoeuvres(s, &runs),
+        conclusion::suitable(s, &runs),
+        reachable::tables_reachable(s, &runs),
+    ])
+}
