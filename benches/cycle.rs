@@ -7,7 +7,7 @@ use divan::{Bencher, black_box};
 use immaculate::gaussian::Gaussian;
 use immaculate::imm::{Equations, Imm, Initial, Problem};
 use immaculate::model::motion::{Mode, constant_velocity, coordinated_turn, integrated_noise};
-use immaculate::model::{Measurement, PolarComponent};
+use immaculate::model::{Conversion, Measurement, PolarComponent};
 use immaculate::rule::RuleName;
 use nalgebra::{SMatrix, SVector, matrix, vector};
 
@@ -47,10 +47,7 @@ fn filter(measurement: Measurement<f64, 4, 2>, noise: [f64; 2], rule: Option<&st
         modes: vec![estimate; 3],
         mode_probabilities: vec![0.8, 0.1, 0.1],
     };
-    let equations = match rule {
-        None => Equations::kalman(),
-        Some(_) => Equations::cubature(),
-    };
+    let equations = Equations::standard(&problem);
     Imm::new(problem, equations, &initial).unwrap()
 }
 
@@ -92,5 +89,17 @@ fn range_bearing_cubature(bencher: Bencher, rule: &str) {
         sensor: [0.0, 0.0],
     };
     let filter = filter(measurement, [1600.0, 49e-6], Some(rule));
+    run(bencher, filter, |x, y| vector![x.hypot(y), y.atan2(x)]);
+}
+
+#[divan::bench(sample_size = 200, sample_count = 1000)]
+fn range_bearing_converted(bencher: Bencher) {
+    let measurement = Measurement::Converted {
+        components: [PolarComponent::Range, PolarComponent::Bearing],
+        position: [0, 2],
+        sensor: [0.0, 0.0],
+        conversion: Conversion::Standard,
+    };
+    let filter = filter(measurement, [1600.0, 49e-6], None);
     run(bencher, filter, |x, y| vector![x.hypot(y), y.atan2(x)]);
 }

@@ -365,6 +365,17 @@ fn a_variance_of_zero_is_for_entries_that_the_mode_lacks() {
         error.to_string(),
         "`initial.modes[1].covariance` is not positive definite (zhu2016 (56))"
     );
+    // Where the mode lacks the entry it is zero or a variance, and without a variance nothing is correlated with it.
+    for (place, entry) in [((4, 4), -1.0), ((5, 1), 0.5)] {
+        let mut wrong = initial.clone();
+        wrong.modes[0].covariance[place] = entry;
+        wrong.modes[0].covariance[(place.1, place.0)] = entry;
+        let error = Imm::new(problem.clone(), Equations::cubature(), &wrong).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "`initial.modes[0].covariance` is not positive definite (zhu2016 (56))"
+        );
+    }
     wrong = initial;
     wrong.modes[0].covariance[(1, 1)] = 0.0;
     let error = Imm::new(problem, Equations::cubature(), &wrong).unwrap_err();
@@ -372,4 +383,63 @@ fn a_variance_of_zero_is_for_entries_that_the_mode_lacks() {
         error.to_string(),
         "`initial.modes[0].covariance` is not positive definite (zhu2016 (56))"
     );
+}
+
+/// Exact, bit for bit: in the table every covariance of a mixture is index by index, that of the combined prediction too.
+#[test]
+fn a_filter_mixes_index_by_index_wherever_it_mixes() {
+    let (problem, mut initial) = six_states();
+    (initial.modes[1].mean[4], initial.modes[1].mean[5]) = (2.0, -3.0);
+    let modes = problem.modes.clone();
+    let mut filter = Imm::new(problem, Equations::cubature().with_index_wise_mixing(), &initial).unwrap();
+    let step = filter.step(Some(&vector![1410.0, 2.35])).unwrap();
+    for (weights, components, mixture) in [
+        (&step.mixing_probabilities[0], &initial.modes, &step.mixed[0]),
+        (&step.mixing_probabilities[1], &initial.modes, &step.mixed[1]),
+        (
+            &step.predicted_mode_probabilities,
+            &step.predicted,
+            &step.combined_prediction,
+        ),
+        (&step.mode_probabilities, &step.updated, &step.combined),
+    ] {
+        let index_wise = index_wise_covariance(weights, components, &mixture.mean, &modes);
+        assert_eq!(mixture.covariance, index_wise);
+        assert_ne!(
+            mixture.covariance,
+            mixture_covariance(weights, components, &mixture.mean)
+        );
+    }
+}
+
+/// Property: at the negative x-axis each of the three places of a plain bearing has its own effect, and a filter with plain bearings has
+/// all.
+#[test]
+fn plain_bearings_are_plain_in_all_three_places() {
+    let (problem, mut initial) = six_states();
+    for estimate in &mut initial.modes {
+        estimate.mean[1] = 0.0;
+    }
+    let usual = Equations::cubature;
+    let step = |equations| {
+        let mut filter = Imm::new(problem.clone(), equations, &initial).unwrap();
+        filter.step(Some(&vector![1000.0, -3.13])).unwrap().clone()
+    };
+    let plain = step(usual().with_plain_bearings());
+    let one_by_one = step(
+        usual()
+            .with_plain_innovation()
+            .with_plain_deviations()
+            .with_plain_mean(),
+    );
+    assert_eq!(plain.updated, one_by_one.updated);
+    let without_mean = step(usual().with_plain_deviations().with_plain_innovation());
+    let without_deviations = step(usual().with_plain_mean().with_plain_innovation());
+    let without_innovation = step(usual().with_plain_mean().with_plain_deviations());
+    assert_ne!(plain.predicted_measurements[0], without_mean.predicted_measurements[0]);
+    assert_ne!(
+        plain.innovation_covariances[0],
+        without_deviations.innovation_covariances[0]
+    );
+    assert_ne!(plain.innovations[0], without_innovation.innovations[0]);
 }

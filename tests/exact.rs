@@ -19,7 +19,12 @@ use immaculate::model::acceleration::{
     position_matrix, response_noise,
 };
 use immaculate::model::motion::{acceleration_noise, constant_velocity, coordinated_turn, integrated_noise};
-use immaculate::number::{Field, Rational, RationalFunction, Surd};
+use immaculate::number::{Convention, Field, Rational, RationalFunction, Surd};
+use immaculate::paper::sustika2015::operations::{Filter, cycle};
+use immaculate::paper::sustika2015::reasoning::{
+    difficult_jacobian, exact_moments, execution_time, kalman_needs_modification, no_linearisation,
+};
+use immaculate::paper::verdict::Verdict;
 use immaculate::rule::fifth_degree::{self, fifth_degree};
 use immaculate::rule::gauss_hermite::{Node, gauss_hermite, moment, nodes};
 use immaculate::rule::moment::{exactness, gaussian_moment, rule_moment, wrong_moment_of_degree};
@@ -1096,6 +1101,61 @@ fn a_kalman_filter_at_its_equilibrium_is_the_fixed_gain_filter() {
             }
         }
     }
+}
+
+// The filters of the coastal radar
+
+#[test]
+fn both_filters_of_the_coastal_radar_cost_what_their_equations_cost() {
+    let total = |filter| Convention::ALL.map(|convention| cycle(filter, convention).total(convention));
+    // By hand, every matrix full and every sum from nothing. In either filter: c 8, μᵢ∣ⱼ 8, x̂⁰ 48, P⁰ 744, A x̂⁰ 144, A P⁰ Aᵀ + Q 1800,
+    // Λ 4, C 4, μ 4, x̂ 24, P 372.
+    let common = 8 + 8 + 48 + 744 + 144 + 1800 + 4 + 4 + 4 + 24 + 372;
+    // In each mode: ν 2, factors of S 4, K 36, x̂⁻ + K ν 30, P⁻ − K S Kᵀ 228, ln L 20.
+    let update = 2 + 4 + 36 + 30 + 228 + 20;
+    // The conversion: z 6, R 22; in each mode H x̂⁻ 24, H P⁻ Hᵀ + R 196, P⁻ Hᵀ 144.
+    let converted = common + 6 + 22 + 2 * (update + 24 + 196 + 144);
+    // In each mode: h 13 · 5 and once more of the centre, ẑ 66, S 234, C 728; root and points of six components 91 + 114, and of those of
+    // constant velocity, which knows that it has no acceleration, 62 + 108.
+    let unscented = common + 2 * (update + 70 + 66 + 234 + 728) + 91 + 114 + 62 + 108;
+    // Points for the prediction too, in each mode: root and points 91 + 114, F X 13 · 72, x̂⁻ 156 for 72, P⁻ 1950 for 900.
+    let twice = unscented + 2 * (91 + 114 + 13 * 72 + 156 - 72 + 1950 - 900);
+    assert_eq!(total(Filter::Converted), [converted, 3881, 1395]);
+    assert_eq!(total(Filter::Unscented), [unscented, 5248, 3176]);
+    assert_eq!(total(Filter::UnscentedTwice), [twice, 8790, 5886]);
+    // A root for each range, of 13 points and of their centre, and for each pivot; an arcus tangent for each bearing. Beside them in either
+    // filter four logarithms and two exponentials, and in the conversion cosine and sine twice and the exponential of its factor.
+    for convention in Convention::ALL {
+        let of = |filter| {
+            let tally = cycle(filter, convention);
+            [tally.roots, tally.functions]
+        };
+        assert_eq!(of(Filter::Converted), [0, 4 + 2 + 5]);
+        assert_eq!(of(Filter::Unscented), [2 * 14 + 6 + 4, 4 + 2 + 2 * 14]);
+        assert_eq!(of(Filter::UnscentedTwice), [2 * 14 + 2 * (6 + 4) + 2, 4 + 2 + 2 * 14]);
+    }
+}
+
+#[test]
+fn the_arguments_of_sustika2015_are_judged_by_what_can_be_computed() {
+    let judged = [
+        difficult_jacobian(),
+        kalman_needs_modification(),
+        exact_moments(),
+        execution_time(),
+        no_linearisation(),
+    ];
+    let found = judged
+        .each_ref()
+        .map(|judgement| (judgement.id.as_str(), judgement.verdict));
+    let expected = [
+        ("sustika2015-difficult-jacobian", Verdict::Refuted),
+        ("sustika2015-kalman-needs-modification", Verdict::Proven),
+        ("sustika2015-exact-moments", Verdict::Proven),
+        ("sustika2015-execution-time", Verdict::Proven),
+        ("sustika2015-no-linearisation", Verdict::Refuted),
+    ];
+    assert_eq!(found, expected);
 }
 
 /// The steady gains of constant velocity and constant acceleration with the same damping root.

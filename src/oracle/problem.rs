@@ -1,7 +1,7 @@
 //! The problem file: what a case gives to a filter, read, checked and put into any number system.
 //!
 //! After this file the reader knows the format `immaculate-problem/1` from the code's side (`spec/formats.md` is its description). What
-//! must be true of a file is in [`super::well_formed`].
+//! must be true of a file is in `well_formed`.
 
 use super::invalid::{Class, Invalid};
 use super::trace::Dimensions;

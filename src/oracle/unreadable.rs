@@ -43,6 +43,7 @@ const OBJECTS: [(&str, &[Kind]); 2] = [
                     ("kappa", attempt::<f64>),
                 ],
             ),
+            ("converted", &[("conversion", attempt::<String>)]),
             (
                 "fixed-gain",
                 &[("mixing", attempt::<String>), ("modes", attempt::<Vec<FixedGainFile>>)],

@@ -96,7 +96,7 @@ const MEASUREMENT_VARIANCE: f64 = 0.05;
 type Table = Equations<Counting, 3, 1>;
 
 /// The matrix as an input.
-fn given<const R: usize, const C: usize>(
+pub(crate) fn given<const R: usize, const C: usize>(
     matrix: &SMatrix<f64, R, C>,
     convention: Convention,
 ) -> SMatrix<Counting, R, C> {
@@ -191,8 +191,10 @@ fn equations(form: Form, convention: Convention) -> Table {
     }
 }
 
-/// The table without what the paper does not compute.
-fn shortened(table: &Table) -> Table {
+/// The table without what the papers do not compute.
+pub(crate) fn shortened<const N: usize, const M: usize>(
+    table: &Equations<Counting, N, M>,
+) -> Equations<Counting, N, M> {
     Equations {
         combined_prediction_mean: |_, _, _| SVector::zeros(),
         combined_prediction_covariance: |_, _, _| SMatrix::zeros(),

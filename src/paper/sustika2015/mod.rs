@@ -6,6 +6,8 @@
 //! - [`contestants`]: the two filters that are compared, and the unscented one with bearings that are never wrapped;
 //! - [`scenario`](mod@scenario): a simulation with every choice made, and a run of it;
 //! - [`sweep`]: scenario 3, the filters' noise parameters varied one at a time;
+//! - [`operations`]: what a cycle of either filter costs;
+//! - [`reasoning`]: the claims that need no simulation;
 //! - [`divergence`]: whether the unscented filter diverges because of the noises or because of the cut of the bearings;
 //! - [`outcome`]: what a run shows of both filters, and of the second with bearings that are never wrapped;
 //! - [`claims`]: the claims, each with its judge;
@@ -15,7 +17,9 @@ pub mod claims;
 pub mod contestants;
 pub mod divergence;
 pub mod journal;
+pub mod operations;
 pub mod outcome;
+pub mod reasoning;
 pub mod scenario;
 pub mod sweep;
 pub mod truth;
