@@ -23,7 +23,7 @@ pub fn better_when_manoeuvring(s: &Specification, runs: &Evidence) -> Judgement 
     let in_table = rows.iter().all(|[converted, unscented]| converted < unscented);
     let of = |scenario: usize| clauses(&WINDOWS, |path| wrapped_and_not(&runs.scenarios[scenario - 1][path]));
     let evidence = format!(
-        "Table 5, IMM-CMKF less IMM-UKF: {:+.4} % in scenario 1, {:+.4} % in scenario 2. In the runs, the same: scenario 1, {}; scenario 2, {}.",
+        "Table 5, IMM-CMKF less IMM-UKF: {:+.4} % in scenario 1, {:+.4} % in scenario 2. In the runs: scenario 1, {}; scenario 2, {}.",
         rows[0][0] - rows[0][1],
         rows[1][0] - rows[1][1],
         of(1),

@@ -2,7 +2,7 @@
 //!
 //! After this folder the reader knows what is left of the paper's comparison: which filter is better where, by how much and how surely, and
 //! what made the unscented one diverge. The claims are in `spec/sustika2015/claims.toml`, in the same order; every judge computes its
-//! evidence and is called once in [`judge`].
+//! evidence and is called once in [`judge`]. Those that need no runs are in [`reasoning`].
 //!
 //! - [`evidence`]: the runs that the judges share, and how two filters are compared;
 //! - [`straight`]: section 5.1, scenarios 1 and 2 without manoeuvres;
@@ -18,6 +18,7 @@ mod noises;
 mod reachable;
 mod straight;
 
+use super::reasoning;
 use crate::paper::Effort;
 use crate::paper::monte_carlo::Progress;
 use crate::paper::specification::{InvalidChoice, sustika2015 as specification};
@@ -35,7 +36,9 @@ pub fn judge(effort: Effort, progress: Progress) -> Result<Vec<Judgement>, Inval
     Ok(vec![
         manoeuvring::better_when_manoeuvring(s, &runs),
         noises::more_robust(s, &runs),
-        // difficult-jacobian, kalman-needs-modification, exact-moments
+        reasoning::difficult_jacobian(),
+        reasoning::kalman_needs_modification(),
+        reasoning::exact_moments(),
         straight::better_without_mismatch(s, &runs),
         straight::better_on_all_scenarios(s, &runs),
         straight::below_three_per_cent(s, &runs),
@@ -48,7 +51,8 @@ pub fn judge(effort: Effort, progress: Progress) -> Result<Vec<Judgement>, Inval
         manoeuvring::better_in_scenario_2(s, &runs),
         noises::divergence(s, &runs),
         noises::cause_of_divergence(s, &runs),
-        // execution-time, no-linearisation
+        reasoning::execution_time(),
+        reasoning::no_linearisation(),
         conclusion::a_little_better_without_mismatch(s, &runs),
         conclusion::better_with_mismatch(s, &runs),
         conclusion::bad_in_manoeuvres(s, &runs),

@@ -97,8 +97,8 @@ pub fn no_difference_without_manoeuvre(s: &Specification, runs: &Evidence) -> Ju
         })
         .collect();
     let evidence = format!(
-        "{}: the filters differ by more than four standard errors at {significant}, where chance alone would do so at fewer than one in a \
-         hundred such sweeps; the greatest difference of wrapped IMM-UKF is {}.",
+        "{}: the filters differ by more than four standard errors at {significant}, which chance alone would do at one setting or more in \
+         fewer than one of a hundred such sweeps; the greatest difference of wrapped IMM-UKF is {}.",
         runs.sweep_in_words(),
         at_in_words(greatest(&parts, |part| part.value.abs()), " % of IMM-CMKF"),
     );
@@ -221,21 +221,25 @@ fn tally<'a>(simulations: impl Iterator<Item = &'a Runs>, form: FitForm) -> Tall
 fn without_jump(scenarios: &[[Runs; 3]; 2]) -> String {
     let all = scenarios.iter().flatten().flat_map(|runs| &runs.0);
     let quiet = || all.clone().filter(|run| !run.jumps);
-    let divergent = || quiet().filter(|run| diverges(run, PLAIN));
     let apart = |least: f64| {
         let far = quiet().filter(|run| run.to_cut >= least);
         far.map(|run| run.apart).fold(0.0, f64::max)
     };
-    let nearest = divergent().map(|run| run.to_cut).fold(0.0, f64::max);
-    let words = match divergent().count() {
-        0 => String::new(),
-        count => format!(
-            "; the {count} of them that diverge have a measured bearing within {}° of the negative x-axis: there the estimate crosses it",
-            figure(nearest / DEGREE)
-        ),
+    let divergent: Vec<f64> = quiet()
+        .filter(|run| diverges(run, PLAIN))
+        .map(|run| run.to_cut)
+        .collect();
+    let words = if divergent.is_empty() {
+        String::new()
+    } else {
+        format!(
+            "; {} diverge, where a measured bearing comes within {}° of the negative x-axis and the estimate crosses it",
+            divergent.len(),
+            figure(divergent.iter().copied().fold(0.0, f64::max) / DEGREE)
+        )
     };
     format!(
-        "In the {} runs of these without a jump, the two unscented filters are at most {} m apart, and {} m where no measured bearing comes \
+        "In the {} of these runs without a jump, the two unscented filters are at most {} m apart, and {} m where no measured bearing comes \
          within {AWAY_DEGREES}° of the negative x-axis{words}.",
         quiet().count(),
         figure(apart(0.0)),
@@ -243,8 +247,8 @@ fn without_jump(scenarios: &[[Runs; 3]; 2]) -> String {
     )
 }
 
-/// Away from the negative x-axis, degrees: five times the deviation of a measured bearing.
-const AWAY_DEGREES: f64 = 5.0;
+/// Away from the negative x-axis, degrees: so far that no point of a filter is beyond it, even where the target passes near the radar.
+const AWAY_DEGREES: f64 = 60.0;
 
 pub fn cause_of_divergence(s: &Specification, runs: &Evidence) -> Judgement {
     let scenarios = || runs.scenarios.iter().flatten();

@@ -80,7 +80,7 @@ pub fn below_three_per_cent(s: &Specification, runs: &Evidence) -> Judgement {
     let printed = [1, 2].map(|scenario| published(s, 4, scenario)).concat();
     let greatest = printed.iter().copied().fold(0.0, f64::max);
     let mut evidence = format!(
-        "The greatest figure of table 4 is {greatest} %. In the runs, the greatest of both filters and scenarios:"
+        "The greatest figure of table 4 is {greatest} %. In the runs, the greatest of both filters and scenarios, wrapped (and never wrapped):"
     );
     let mut differences = Vec::new();
     for (form, name) in FitForm::ALL.into_iter().zip([
@@ -95,7 +95,7 @@ pub fn below_three_per_cent(s: &Specification, runs: &Evidence) -> Judgement {
         let plain = [of(CONVERTED), of(PLAIN)].concat();
         let _ = write!(
             evidence,
-            " {} wrapped and {} never wrapped by the {name};",
+            " {} ({}) by the {name};",
             greatest_of(&wrapped),
             greatest_of(&plain)
         );
