@@ -233,7 +233,8 @@ fn only_an_unwrapped_bearing_makes_a_filter_diverge_and_only_near_the_cut() {
         for (run, outcome) in outcomes(&scenario, RUNS, 1, &|| ()).iter().enumerate() {
             let [converted, wrapped, plain] = [0, 1, 2].map(|filter| diverges(outcome, filter));
             assert!(!converted && !wrapped, "{name}, {window}, run {run}");
-            if outcome.to_cut > 20.0 * DEGREE {
+            // So far away that no point of a filter is beyond it, even where the target passes near the radar: none of 24 000 runs was.
+            if outcome.to_cut > 35.0 * DEGREE {
                 // Not the same bits: the points' bearings are added up in another order. Roundings of some radians at some kilometres.
                 assert!(outcome.apart < 1e-6, "{name}, {window}, run {run}: {} m", outcome.apart);
                 away += 1;

@@ -217,38 +217,25 @@ fn tally<'a>(simulations: impl Iterator<Item = &'a Runs>, form: FitForm) -> Tall
     Tally::of(points.iter(), runs)
 }
 
-/// How far apart the two unscented filters come in runs without a jump, and how near to the cut those of them are that diverge.
+/// Where the two unscented filters part in runs without a jump, and which of these diverge.
 fn without_jump(scenarios: &[[Runs; 3]; 2]) -> String {
     let all = scenarios.iter().flatten().flat_map(|runs| &runs.0);
-    let quiet = || all.clone().filter(|run| !run.jumps);
-    let apart = |least: f64| {
-        let far = quiet().filter(|run| run.to_cut >= least);
-        far.map(|run| run.apart).fold(0.0, f64::max)
-    };
-    let divergent: Vec<f64> = quiet()
-        .filter(|run| diverges(run, PLAIN))
-        .map(|run| run.to_cut)
-        .collect();
-    let words = if divergent.is_empty() {
-        String::new()
-    } else {
-        format!(
-            "; {} diverge, where a measured bearing comes within {}° of the negative x-axis and the estimate crosses it",
-            divergent.len(),
-            figure(divergent.iter().copied().fold(0.0, f64::max) / DEGREE)
-        )
-    };
+    let quiet: Vec<&Outcome> = all.filter(|run| !run.jumps).collect();
+    let apart: Vec<&Outcome> = quiet.iter().copied().filter(|run| run.apart > THE_SAME).collect();
+    let greatest = |of: fn(&Outcome) -> f64| apart.iter().map(|run| of(run)).fold(0.0, f64::max);
     format!(
-        "In the {} of these runs without a jump, the two unscented filters are at most {} m apart, and {} m where no measured bearing comes \
-         within {AWAY_DEGREES}° of the negative x-axis{words}.",
-        quiet().count(),
-        figure(apart(0.0)),
-        figure(apart(AWAY_DEGREES * DEGREE)),
+        "In the {} of these runs without a jump the two unscented filters agree to a millimetre in all but {}, which differ by up to {} m and \
+         of which {} diverge: their measured bearings come within {}° of the negative x-axis, and what the filter expects goes beyond.",
+        quiet.len(),
+        apart.len(),
+        figure(greatest(|run| run.apart)),
+        apart.iter().filter(|run| diverges(run, PLAIN)).count(),
+        figure(greatest(|run| run.to_cut) / DEGREE),
     )
 }
 
-/// Away from the negative x-axis, degrees: so far that no point of a filter is beyond it, even where the target passes near the radar.
-const AWAY_DEGREES: f64 = 60.0;
+/// Estimates nearer than this are called the same, m: some orders above what roundings do, and below what any filter is good for.
+const THE_SAME: f64 = 1e-3;
 
 pub fn cause_of_divergence(s: &Specification, runs: &Evidence) -> Judgement {
     let scenarios = || runs.scenarios.iter().flatten();
