@@ -116,8 +116,8 @@ pub fn all_below_zero(differences: &[Estimate]) -> Verdict {
     }
 }
 
-/// The verdict where it was not published which of several is meant: theirs if they agree; not reproducible when one is confirmed and another
-/// refuted, so that what was not published decides.
+/// The verdict where it was not published which of several is meant: theirs if they agree; not reproducible when one is confirmed and
+/// another refuted, so that what was not published decides.
 pub fn whichever(verdicts: &[Verdict]) -> Verdict {
     let (confirmed, refuted) = (
         verdicts.contains(&Verdict::Confirmed),

@@ -1,7 +1,7 @@
 //! Section 5.2: scenarios 1 and 2 on the trajectory with manoeuvres.
 //!
-//! After this file the reader knows what the times of the manoeuvres, which table 1 seems to have the wrong way round, do to the comparison:
-//! with the noises of scenario 2 they decide which filter is the better one.
+//! After this file the reader knows what the times of the manoeuvres, which table 1 seems to have the wrong way round, do to the
+//! comparison: with the noises of scenario 2 they decide which filter is the better one.
 
 use super::evidence::{
     CONVERTED, Evidence, PLAIN, Runs, WINDOWS, WRAPPED, clauses, less_limit, opposite, published, words,
