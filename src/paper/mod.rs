@@ -45,7 +45,7 @@ pub enum Paper {
 /// How much is computed, and from which random numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Effort {
-    /// The number of runs; the paper's own when none is given.
+    /// The number of runs; the paper's own when none is given, or what its judges ask for.
     pub runs: Option<usize>,
     /// The seed of the random numbers.
     pub seed: u64,
