@@ -4,12 +4,12 @@
 //! what made the unscented one diverge. The claims are in `spec/sustika2015/claims.toml`, in the same order; every judge computes its
 //! evidence and is called once in [`judge`]. Those that need no runs are in [`reasoning`].
 //!
-//! - [`evidence`]: the runs that the judges share, and how two filters are compared;
-//! - [`straight`]: section 5.1, scenarios 1 and 2 without manoeuvres;
-//! - [`manoeuvring`]: section 5.2, the same with manoeuvres;
-//! - [`noises`]: scenario 3, and the cause of the divergence;
-//! - [`conclusion`]: section 6;
-//! - [`reachable`]: whether anything gives tables 4 and 5.
+//! - `evidence`: the runs that the judges share, and how two filters are compared;
+//! - `straight`: section 5.1, scenarios 1 and 2 without manoeuvres;
+//! - `manoeuvring`: section 5.2, the same with manoeuvres;
+//! - `noises`: scenario 3, and the cause of the divergence;
+//! - `conclusion`: section 6;
+//! - `reachable`: whether anything gives tables 4 and 5.
 
 mod conclusion;
 mod evidence;
