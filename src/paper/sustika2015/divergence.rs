@@ -91,7 +91,7 @@ impl Tally {
         let verdict = if plain == 0 {
             "None diverges, so nothing is said of a cause."
         } else if 10 * wrapped <= plain && 10 * (plain - self.divergent_with_jump[2]) <= plain {
-            "The cause is the unwrapped azimuth, not the mismatch of the noises: the mismatch is the same for both."
+            "The cause is the unwrapped azimuth, not the noises: both see the same and take the same noises for granted."
         } else if wrapped >= plain {
             "The cause is not the azimuth: the wrapped filter diverges as often."
         } else {

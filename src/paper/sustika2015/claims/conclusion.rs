@@ -108,7 +108,7 @@ pub fn bad_in_manoeuvres(s: &Specification, runs: &Evidence) -> Judgement {
         in_errors.map(figure).join(" and "),
     );
     // Two standard errors: less than that is what chance does to one mean in twenty.
-    let verdict = proven_if(in_errors.iter().all(|margin| *margin > 2.0));
+    let verdict = confirmed_if(in_errors.iter().all(|margin| *margin > 2.0));
     s.judgement("sustika2015-bad-in-manoeuvres", verdict, evidence)
 }
 
