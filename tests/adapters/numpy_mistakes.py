@@ -98,12 +98,11 @@ class Cubature5Weight13:
 
 
 class ConvertedCovarianceNotRotated:
-    """diag(s_r^2, r^2 s_theta^2), along and across the line of sight, is used for x and y."""
+    """The variances along and across the line of sight are used for x and y."""
 
     def converted_covariance(self, z):
         distance = z[self.conversion.rows[0]]
-        across = distance**2 * self.conversion.bearing_variance
-        return np.diag([self.conversion.range_variance, across])
+        return np.diag(self.conversion.variances(distance))
 
 
 class ConvertedCovarianceCrossTermOfOtherSign:
