@@ -425,11 +425,11 @@ fn points<T, const N: usize, const M: usize>(problem: &Problem<T, N, M>) -> &[SV
 }
 
 /// The weights of the problem's rule; none without one.
-fn weights<T, const N: usize, const M: usize>(problem: &Problem<T, N, M>) -> &[T] {
+pub(super) fn weights<T, const N: usize, const M: usize>(problem: &Problem<T, N, M>) -> &[T] {
     problem.rule.as_ref().map_or(&[], |rule| &rule.weights)
 }
 
 /// The covariance weights of the problem's rule; none without one.
-fn covariance_weights<T, const N: usize, const M: usize>(problem: &Problem<T, N, M>) -> &[T] {
+pub(super) fn covariance_weights<T, const N: usize, const M: usize>(problem: &Problem<T, N, M>) -> &[T] {
     problem.rule.as_ref().map_or(&[], |rule| &rule.covariance_weights)
 }

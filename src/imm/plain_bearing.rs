@@ -4,10 +4,10 @@
 //! the points' bearings, their deviations from it, and the innovation. Far from the negative x-axis nothing changes.
 
 use super::Equations;
+use super::equations::{covariance_weights, weights};
 use crate::filter::cubature;
 use crate::model::Measurement;
 use crate::number::Real;
-use crate::rule::Rule;
 use nalgebra::{SMatrix, SVector};
 
 impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
@@ -22,7 +22,7 @@ impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
     pub fn with_plain_mean(self) -> Self {
         Self {
             predicted_measurement: |problem, _, now, j| {
-                cubature::weighted_mean(weights(problem.rule.as_ref()).0, &now.measured_points[j])
+                cubature::weighted_mean(weights(problem), &now.measured_points[j])
             },
             ..self
         }
@@ -34,13 +34,12 @@ impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
         Self {
             innovation_covariance: |problem, _, now, j| {
                 let (values, mean) = (&now.measured_points[j], &now.predicted_measurements[j]);
-                let weights = weights(problem.rule.as_ref()).1;
-                cubature::weighted_covariance(weights, values, mean, &problem.measurement_noise)
+                cubature::weighted_covariance(covariance_weights(problem), values, mean, &problem.measurement_noise)
             },
             cross_covariance: |problem, _, now, j| {
                 cubature::cross_covariance(
                     &Measurement::Linear(SMatrix::zeros()), // which has no angles
-                    weights(problem.rule.as_ref()).1,
+                    covariance_weights(problem),
                     &now.predicted_points[j],
                     &now.predicted[j].mean,
                     &now.measured_points[j],
@@ -62,9 +61,4 @@ impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
             ..self
         }
     }
-}
-
-/// A rule's weights for means and for covariances; none without a rule.
-fn weights<T, const N: usize>(rule: Option<&Rule<T, N>>) -> (&[T], &[T]) {
-    rule.map_or((&[], &[]), |rule| (&rule.weights, &rule.covariance_weights))
 }
