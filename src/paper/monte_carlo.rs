@@ -9,7 +9,7 @@ use super::simulation::Simulation;
 use crate::imm::{Failure, Imm, Initial, Step};
 use crate::number::Real;
 use crate::statistics::consistency::{nees, nis};
-use nalgebra::Vector4;
+use nalgebra::{SVector, Vector4};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use rayon::prelude::*;
@@ -97,19 +97,31 @@ pub fn track(contestant: &Contestant, draw: &Draw) -> Run {
     };
     let mut filter = Imm::new(contestant.problem.clone(), contestant.equations, &initial)
         .expect("the scenarios' problems are part of the program");
-    for (truth, measurement) in draw.truth.iter().zip(&draw.measurements) {
+    follow(&mut run, &mut filter, &draw.truth, &draw.measurements, record);
+    run
+}
+
+/// A filter along the measurements of a run, to their end or to the first step that cannot be computed; `record` keeps what is needed of a
+/// step and the truth.
+pub fn follow<const N: usize, const M: usize>(
+    run: &mut Run,
+    filter: &mut Imm<f64, N, M>,
+    truth: &[SVector<f64, N>],
+    measurements: &[SVector<f64, M>],
+    record: fn(&mut Run, &Step<f64, N, M>, &SVector<f64, N>),
+) {
+    for (truth, measurement) in truth.iter().zip(measurements) {
         let start = Instant::now();
         let step = filter.step(Some(measurement));
         run.time += start.elapsed();
         match step {
-            Ok(step) => record(&mut run, step, truth),
+            Ok(step) => record(run, step, truth),
             Err(failure) => {
                 run.failure = Some(failure);
-                break;
+                return;
             }
         }
     }
-    run
 }
 
 /// Keeps what the statistics need of a step.

@@ -9,14 +9,14 @@ use super::truth::{Draw, Motion, Trajectory};
 use super::{DURATION, INTERVAL, RADAR, RUNS};
 use crate::imm::{Imm, Step};
 use crate::model::conversion::Conversion;
-use crate::paper::monte_carlo::Run;
+use crate::paper::monte_carlo::{Run, follow};
 use crate::paper::result::Average;
 use crate::paper::simulation::{self, Filter, Simulation};
 use crate::paper::specification::Choices;
 use crate::statistics::consistency::{nees, nis};
 use crate::statistics::fit_error::{FitForm, position_fit_error};
 use nalgebra::{Vector2, Vector4, Vector6};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// What the first measurement is used for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,19 +72,16 @@ impl Scenario {
         let mut filter = Imm::new(contestant.problem.clone(), contestant.equations, &initial)
             .expect("the paper's problems are part of the program");
         let truth = &draw.truth[self.first_filtered()..];
-        for (truth, measurement) in truth.iter().zip(&draw.measurements[self.first_filtered()..]) {
-            let start = Instant::now();
-            let step = filter.step(Some(measurement));
-            run.time += start.elapsed();
-            match step {
-                Ok(step) => record(&mut run, step, truth),
-                Err(failure) => {
-                    run.failure = Some(failure);
-                    return run;
-                }
-            }
+        follow(
+            &mut run,
+            &mut filter,
+            truth,
+            &draw.measurements[self.first_filtered()..],
+            record,
+        );
+        if run.failure.is_none() {
+            run.fit_error = Some(fit_error(self.fit_form, &run.errors, truth));
         }
-        run.fit_error = Some(fit_error(self.fit_form, &run.errors, truth));
         run
     }
 
