@@ -34,6 +34,8 @@ enum Command {
     Reproduce(cli::reproduce::Reproduce),
     /// Judge what the papers claim, each claim by computation
     Claims(Claims),
+    /// Write everything on one page: figures, tables, claims, errata, equations
+    Report(cli::report::Report),
     /// List a cubature rule: points and weights, exact and decimal, with its proven degree
     Rule(Rule),
     /// List the open parameters of the papers' scenarios and their alternatives
@@ -103,6 +105,7 @@ fn main() -> ExitCode {
     let outcome = match &cli.command {
         Command::Reproduce(arguments) => cli::reproduce::run(arguments),
         Command::Claims(arguments) => claims(arguments).map(Done::from),
+        Command::Report(arguments) => cli::report::run(arguments),
         Command::Rule(arguments) => rule(arguments).map(Done::from),
         Command::Choices(arguments) => Ok(choices(arguments).into()),
         Command::Check(arguments) => cli::check::run(arguments),

@@ -68,6 +68,16 @@ pub struct Equation {
     pub erratum: Option<Erratum>,
 }
 
+impl Equation {
+    /// The printed number in parentheses, or the name where there is none.
+    pub fn label(&self) -> String {
+        match (self.number, &self.name) {
+            (Some(number), _) => format!("({number})"),
+            (None, name) => name.clone().unwrap_or_default(),
+        }
+    }
+}
+
 /// What is wrong with an equation as printed.
 #[derive(Debug, Clone, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
@@ -271,6 +281,11 @@ impl Choices {
 }
 
 impl Specification {
+    /// The equations with a printed number, then those without.
+    pub fn all_equations(&self) -> impl Iterator<Item = &Equation> {
+        self.equations.iter().chain(&self.unnumbered)
+    }
+
     /// The alternative of a parameter: the chosen one, or the default.
     ///
     /// # Errors

@@ -8,44 +8,56 @@ use crate::paper::sustika2015::DIVERGENT_FIT_ERROR;
 use crate::paper::sustika2015::divergence::{Row, Tally};
 use crate::statistics::Estimate;
 
+/// What each column of the table is.
+pub(super) const HEADER: [&str; 6] = [
+    "simulation",
+    "manoeuvres",
+    "UKF − CMKF, wrapped",
+    "never wrapped",
+    "diverged",
+    "with a jump",
+];
+
+/// The cells of the table, a row a simulation.
+pub(super) fn cells(rows: &[Row]) -> Vec<Vec<String>> {
+    let counts = |of: [usize; 3]| of.map(|count| count.to_string()).join(" / ");
+    let of_row = |row: &Row| {
+        vec![
+            row.scenario.to_owned(),
+            row.window.to_owned(),
+            difference(row.point.unscented_less_converted),
+            difference(row.point.plain_less_converted),
+            counts(row.point.fits.map(|fit| fit.divergent)),
+            counts(row.point.fits.map(|fit| fit.divergent_with_jump)),
+        ]
+    };
+    rows.iter().map(of_row).collect()
+}
+
+/// What the figures are of.
+pub(super) fn legend(runs: usize) -> String {
+    format!(
+        "Differences are of percentage fit errors, in %, means over {runs} runs of the same truth and measurements, with their standard \
+         errors and in these. A run diverges when its percentage fit error exceeds {DIVERGENT_FIT_ERROR} %; the counts are of IMM-CMKF, \
+         IMM-UKF and IMM-UKF never wrapped."
+    )
+}
+
+/// What the runs of all simulations together say.
+pub(super) fn cause(rows: &[Row], runs: usize) -> String {
+    Tally::of(rows.iter().map(|row| &row.point), runs).cause()
+}
+
 /// The rows as text.
 pub fn text(rows: &[Row], runs: usize) -> String {
-    let mut table = table(&[
-        "simulation",
-        "manoeuvres",
-        "UKF − CMKF, wrapped",
-        "never wrapped",
-        "diverged",
-        "with a jump",
-    ]);
-    for Row {
-        scenario,
-        window,
-        point,
-    } in rows
-    {
-        let counts = |of: [usize; 3]| of.map(|count| count.to_string()).join(" / ");
-        table.add_row([
-            (*scenario).to_owned(),
-            (*window).to_owned(),
-            difference(point.unscented_less_converted),
-            difference(point.plain_less_converted),
-            counts(point.fits.map(|fit| fit.divergent)),
-            counts(point.fits.map(|fit| fit.divergent_with_jump)),
-        ]);
+    let mut table = table(&HEADER);
+    for row in cells(rows) {
+        table.add_row(row);
     }
-    let tally = Tally::of(rows.iter().map(|row| &row.point), runs);
     format!(
         "What makes the unscented filter diverge\n\n{table}\n\n{}\n{}\n",
-        wrapped(
-            &format!(
-                "Differences are of percentage fit errors, in %, means over {runs} runs of the same truth and measurements, with their standard \
-                 errors and in these. A run diverges when its percentage fit error exceeds {DIVERGENT_FIT_ERROR} %; the counts are of IMM-CMKF, \
-                 IMM-UKF and IMM-UKF never wrapped."
-            ),
-            ""
-        ),
-        wrapped(&tally.cause(), "")
+        wrapped(&legend(runs), ""),
+        wrapped(&cause(rows, runs), "")
     )
 }
 

@@ -12,6 +12,7 @@ pub mod divergence;
 pub mod figure;
 pub mod fit_error;
 pub mod long_term;
+pub mod page;
 pub mod reproduction;
 pub mod rule;
 pub mod stability;

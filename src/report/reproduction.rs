@@ -42,7 +42,8 @@ pub fn published_and_computed(paper: Paper, reproduction: &Reproduction) -> Vec<
         .collect()
 }
 
-fn compare(paper: Paper, reproduction: &Reproduction, table: &Table) -> Vec<Comparison> {
+/// Every figure of one table that the runs reproduce.
+pub fn compare(paper: Paper, reproduction: &Reproduction, table: &Table) -> Vec<Comparison> {
     let mut comparisons = Vec::new();
     for row in &table.rows {
         let Some(of_row) = paper.figure_of_row(&reproduction.choices, table.number, &row.name) else {
@@ -228,16 +229,20 @@ fn differences(reproduction: &Reproduction) -> comfy_table::Table {
     for (position, velocity) in of(Quantity::Position).zip(of(Quantity::Velocity)) {
         let mut row = vec![format!("{} − {}", position.filter, position.minus)];
         for difference in [position, velocity] {
-            if difference.estimate.value.abs() < ROUNDING {
-                row.extend(["0".to_owned(), "rounding".to_owned()]);
-            } else {
-                row.push(figure(difference.estimate.value));
-                row.push(standard_errors(difference.estimate.distance_from(0.0)));
-            }
+            row.extend(with_distance(difference.estimate));
         }
         table.add_row(row);
     }
     table
+}
+
+/// A difference of errors, and how many standard errors it is from zero.
+pub(super) fn with_distance(difference: Estimate) -> [String; 2] {
+    if difference.value.abs() < ROUNDING {
+        ["0".to_owned(), "rounding".to_owned()]
+    } else {
+        [figure(difference.value), standard_errors(difference.distance_from(0.0))]
+    }
 }
 
 fn delays(reproduction: &Reproduction) -> comfy_table::Table {
@@ -300,7 +305,7 @@ fn consistency(reproduction: &Reproduction) -> comfy_table::Table {
 }
 
 /// The part of the steps that is inside the bounds; a filter without covariances has none.
-fn inside(consistency: &Consistency) -> String {
+pub(super) fn inside(consistency: &Consistency) -> String {
     if consistency.mean.value.is_finite() {
         format!("{:.0} %", 100.0 * consistency.inside)
     } else {
@@ -324,34 +329,55 @@ fn failures(reproduction: &Reproduction) -> String {
     text
 }
 
-/// The position errors under each open choice, in the paper's measure, one line an alternative.
-pub fn alternatives(paper: Paper, reproductions: &[Reproduction]) -> String {
-    let names: Vec<&str> = paper.specification().tables[0]
-        .columns
-        .iter()
-        .map(String::as_str)
-        .collect();
+/// The errors under each open choice by itself.
+pub(super) struct Alternatives {
+    /// What is measured, with its unit.
+    pub measure: &'static str,
+    /// The filters, one a column after the first.
+    pub filters: Vec<&'static str>,
+    /// The choice, then an error a filter.
+    pub rows: Vec<Vec<String>>,
+}
+
+/// The position errors under each open choice, in the paper's measure.
+pub(super) fn under_each_choice(paper: Paper, reproductions: &[Reproduction]) -> Alternatives {
+    let columns = paper.specification().tables.first().map(|table| &table.columns);
+    let filters: Vec<&str> = columns.into_iter().flatten().map(String::as_str).collect();
     let has_fit_error = |reproduction: &Reproduction| reproduction.filters.iter().any(|f| f.fit_error.is_some());
     let (of, measure) = if reproductions.iter().any(has_fit_error) {
         (Figure::FitError, "percentage fit error (%)")
     } else {
         (Figure::Error(Quantity::Position), "position error (m)")
     };
-    let mut header = vec![measure];
-    header.extend(&names);
+    let of_choice = |reproduction: &Reproduction| {
+        let cells = filters.iter().map(|name| error_of(reproduction, name, of));
+        [reproduction.choices.describe()].into_iter().chain(cells).collect()
+    };
+    Alternatives {
+        measure,
+        rows: reproductions.iter().map(of_choice).collect(),
+        filters,
+    }
+}
+
+/// The error of the filter whose name begins so, and how many of its runs failed.
+fn error_of(reproduction: &Reproduction, name: &str, of: Figure) -> String {
+    let filter = reproduction.filters.iter().find(|f| f.name.starts_with(name));
+    let error = filter.and_then(|f| reproduction.figure(&f.name, of));
+    let cell = error.map_or_else(|| "—".to_owned(), |error| figure(error.value));
+    match filter.map_or(0, |f| f.failures.len()) {
+        0 => cell,
+        failed => format!("{cell} ({failed} failed)"),
+    }
+}
+
+/// The same as text, one line an alternative.
+pub fn alternatives(paper: Paper, reproductions: &[Reproduction]) -> String {
+    let alternatives = under_each_choice(paper, reproductions);
+    let mut header = vec![alternatives.measure];
+    header.extend(&alternatives.filters);
     let mut table = table(&header);
-    for reproduction in reproductions {
-        let mut row = vec![reproduction.choices.describe()];
-        for name in &names {
-            let filter = reproduction.filters.iter().find(|f| f.name.starts_with(name));
-            let error = filter.and_then(|f| reproduction.figure(&f.name, of));
-            let failed = filter.map_or(0, |f| f.failures.len());
-            let mut cell = error.map_or_else(|| "—".to_owned(), |error| figure(error.value));
-            if failed > 0 {
-                let _ = write!(cell, " ({failed} failed)");
-            }
-            row.push(cell);
-        }
+    for row in alternatives.rows {
         table.add_row(row);
     }
     format!("Each open choice by itself, the others at their defaults\n{table}\n")

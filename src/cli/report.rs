@@ -1,0 +1,58 @@
+//! `immaculate report --out FILE`: everything on one page.
+//!
+//! After this file the reader knows how the page is asked for, and what is shown while it is computed.
+
+use super::{Done, Refusal, effort, write_file};
+use clap::Args;
+use immaculate::report::page;
+use immaculate::report::page::content::{Content, Extent, Watch};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::path::PathBuf;
+
+/// Writes one HTML page: the papers' figures and tables, their claims with verdict and evidence, their errata, and the book of equations.
+/// It needs no network to be read. With the papers' numbers of runs it takes some minutes.
+#[derive(Args)]
+pub struct Report {
+    /// The file that is written
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// The number of Monte-Carlo runs of everything; when not given the papers' own, and what the judges of claims ask for
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=1_000_000))]
+    runs: Option<u64>,
+    /// The seed of the random numbers
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    seed: u64,
+}
+
+/// Points a side of the stability map, as `immaculate stability --map` has them.
+const MAP_POINTS: usize = 49;
+
+/// Computes the page and writes it.
+pub fn run(arguments: &Report) -> Result<Done, Refusal> {
+    let extent = Extent {
+        effort: effort(arguments.runs, arguments.seed),
+        map_points: MAP_POINTS,
+    };
+    let bar = ProgressBar::new(0);
+    let watch = Watch {
+        begin: &|step, length| begin(&bar, step, length),
+        advance: &|| bar.inc(1),
+    };
+    let content = Content::compute(extent, &watch).map_err(Refusal::request)?;
+    bar.finish_and_clear();
+    let page = page::html(&content).map_err(|error| Refusal::Output(error.to_string()))?;
+    write_file(&arguments.out, &page)?;
+    Ok(format!("{}: {} kB\n", arguments.out.display(), page.len() / 1000).into())
+}
+
+/// A new step, and its length where that is known before.
+fn begin(bar: &ProgressBar, step: String, length: Option<usize>) {
+    let template = match length {
+        Some(_) => "{msg} {wide_bar} {pos}/{len}, {eta} left",
+        None => "{spinner} {msg}: {pos} runs, {elapsed}",
+    };
+    bar.set_style(ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar.reset();
+    bar.set_length(length.unwrap_or(0) as u64);
+    bar.set_message(step);
+}

@@ -1,0 +1,108 @@
+//! Which figures a paper has on the page, and what is to be seen on each.
+//!
+//! After this file the reader knows how a drawing comes onto the page: as it is drawn for a file, with a caption; the page's style gives
+//! its colours on a dark screen.
+
+use super::content::{Content, Runs};
+use super::table::table;
+use crate::paper::Paper;
+use crate::paper::result::Reproduction;
+use crate::paper::sustika2015::divergence::Row;
+use crate::paper::sustika2015::sweep::Trajectory;
+use crate::report::figure::{self, NotDrawn};
+use crate::report::{conversion, divergence, fit_error, long_term, stability_map};
+use maud::{Markup, PreEscaped, html};
+
+/// A drawing with its caption.
+fn figure(svg: &str, caption: &str) -> Markup {
+    html! {
+        figure {
+            div.drawing { (PreEscaped(svg)) }
+            figcaption { (caption) }
+        }
+    }
+}
+
+/// The figures of a simulation.
+///
+/// # Errors
+///
+/// [`NotDrawn`] when one cannot be drawn.
+pub fn of_simulation(reproduction: &Reproduction) -> Result<Vec<Markup>, NotDrawn> {
+    let mut figures = Vec::new();
+    if let Some(first_run) = &reproduction.first_run {
+        figures.push(figure(
+            &figure::path(reproduction, first_run)?,
+            "The first run: where the target was, where it was measured, and where the filters thought it was.",
+        ));
+    }
+    figures.push(figure(
+        &figure::errors(reproduction)?,
+        "Root mean square errors over time, with two standard errors to either side. Lines that coincide are drawn one over the other, \
+         each thinner than the one below it.",
+    ));
+    figures.push(figure(
+        &figure::mode_probabilities(reproduction)?,
+        "Mean mode probabilities over time. A good filter follows the shade.",
+    ));
+    Ok(figures)
+}
+
+/// The figures of a paper that are of no single simulation.
+///
+/// # Errors
+///
+/// [`NotDrawn`] when one cannot be drawn.
+pub fn of_paper(paper: Paper, content: &Content) -> Result<Vec<Markup>, NotDrawn> {
+    match paper {
+        Paper::Derbez2000 => of_derbez2000(content),
+        Paper::Sustika2015 => of_sustika2015(content),
+        Paper::Zhu2016 | Paper::Liu2017 => Ok(Vec::new()),
+    }
+}
+
+fn of_derbez2000(content: &Content) -> Result<Vec<Markup>, NotDrawn> {
+    let [stable, unstable, undecided] = content.map.counts();
+    Ok(vec![
+        html! { h4 #derbez2000-long-term { "The predicted error beside the simulated one" } },
+        figure(
+            &long_term::figures_1_and_2(content.extent.effort.seed)?,
+            "Figures 1 and 2 of the paper: by how many per cent the predicted long-term error is off. White is right.",
+        ),
+        html! { h4 #derbez2000-stability { "Which fixed-gain filters are stable together" } },
+        figure(
+            &stability_map::draw(&content.map)?,
+            &format!(
+                "{stable} pairs of noises certified stable, {unstable} certified unstable, {undecided} undecided; each verdict is a \
+                 quadratic form or a growing product that is checked in exact arithmetic."
+            ),
+        ),
+    ])
+}
+
+fn of_sustika2015(content: &Content) -> Result<Vec<Markup>, NotDrawn> {
+    let mut figures = vec![
+        html! { h4 #sustika2015-sweep { "Scenario 3: the fit error over the noises that the filters take for granted" } },
+    ];
+    for (trajectory, number) in Trajectory::ALL.into_iter().zip([2, 4]) {
+        figures.push(figure(
+            &fit_error::draw(&content.sweep.results, trajectory, content.sweep.runs)?,
+            &format!("Figure {number} of the paper: the percentage fit error over the filters’ noises."),
+        ));
+    }
+    figures.push(html! { h4 #sustika2015-divergence { "What makes the unscented filter diverge" } });
+    figures.push(divergences(&content.divergence));
+    figures.push(html! { h4 #sustika2015-conversions { "Where converted measurements can be trusted" } });
+    figures.push(figure(
+        &conversion::figure()?,
+        "The bias and the spread of the four conversions over the standard deviation of the bearing.",
+    ));
+    Ok(figures)
+}
+
+fn divergences(rows: &Runs<Vec<Row>>) -> Markup {
+    html! {
+        (table(&divergence::legend(rows.runs), &divergence::HEADER, &divergence::cells(&rows.results)))
+        p { (divergence::cause(&rows.results, rows.runs)) }
+    }
+}
