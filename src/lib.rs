@@ -13,10 +13,12 @@
 //! | [`imm`]        | the cycle                                                                                 |
 //! | [`steady`]     | steady gains, Riccati and Lyapunov equations, joint stability and its certificates         |
 //! | [`oracle`]     | certified cases, traces, and the judge of other filters                                   |
+//! | [`book`]       | every equation with its code, derivation, errata, tests, mistakes and cases               |
 //!
 //! Arrows run downwards: numbers know nothing, equations know numbers and matrices. Equations, filters and the cycle read no files,
 //! draw no random numbers and print nothing.
 
+pub mod book;
 pub mod filter;
 pub mod gaussian;
 pub mod imm;

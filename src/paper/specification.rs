@@ -12,6 +12,8 @@ use std::sync::LazyLock;
 pub struct Specification {
     /// Who wrote it, and where.
     pub paper: Citation,
+    /// What its filters are, in the words of `spec/variants.toml`.
+    pub applies: Vec<String>,
     /// The numbered equations, in order.
     pub equations: Vec<Equation>,
     /// What the paper prints without a number, or needs and does not print.
@@ -64,6 +66,18 @@ pub struct Equation {
     pub status: String,
     /// What it says.
     pub meaning: String,
+    /// The values of a filter's step that it is an equation of; none outside a step.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub quantities: Vec<String>,
+    /// Where it is used, in the words of `spec/variants.toml`, if not wherever the paper's filters are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub applies: Option<Vec<String>>,
+    /// Which mistakes of these values are made in it; where none is named, all that can be made where it is used.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub mistakes: Vec<String>,
+    /// Of an equation outside a step: why no case holds it, and what does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub outside: Option<String>,
     /// What is wrong as printed.
     pub erratum: Option<Erratum>,
 }
@@ -416,6 +430,7 @@ pub fn liu2017() -> &'static Specification {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct EquationsFile {
+    applies: Vec<String>,
     paper: Citation,
     equation: Vec<Equation>,
     #[serde(default)]
@@ -454,6 +469,7 @@ fn parse([equations, tables, scenario, claims]: [&str; 4]) -> Specification {
     let claims: ClaimsFile = read(claims);
     Specification {
         paper: equations.paper,
+        applies: equations.applies,
         equations: equations.equation,
         unnumbered: equations.unnumbered,
         tables: tables.table,

@@ -110,6 +110,24 @@ pub enum Applies {
 }
 
 impl Applies {
+    /// The words for it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::All => "all",
+            Self::Points => "points",
+            Self::Conversions => "conversions",
+            Self::Kalman => "kalman",
+            Self::Covariances => "covariances",
+            Self::FixedGains => "fixed gains",
+            Self::EmbeddedMotion => "embedded motion",
+            Self::UnequalDimensions => "unequal dimensions",
+            Self::Angles => "angles",
+            Self::Bearings => "bearings",
+            Self::Missed => "missed",
+            Self::SeveralModes => "several modes",
+        }
+    }
+
     /// Whether it can make a difference here. Where it cannot, the variant leaves every value as it is.
     pub fn to<T: Real, const N: usize, const M: usize>(self, setup: &Setup<T, N, M>) -> bool {
         let problem = &setup.problem;

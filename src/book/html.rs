@@ -1,0 +1,227 @@
+//! The book as HTML: a chapter a paper, a section an equation, and the index between numbers and code.
+//!
+//! After this file the reader knows what a section holds, in this order: what the equation says, its formula, what is printed instead, why
+//! it is so and where the code is, the tests that hold it, and the mistakes that are made in it with the cases that catch them.
+//!
+//! An item that realises several equations stands in the section of the first; the others lead there.
+
+use super::doc::PartKind;
+use super::markup::{formula, paragraphs, sentence, table};
+use super::{Entry, Realisation, entries, entries_of, realisations};
+use crate::paper::Paper;
+use crate::paper::specification::{Authors, Erratum};
+use maud::{Markup, html};
+
+/// The equations of a paper.
+pub fn chapter(paper: Paper) -> Markup {
+    let of = &paper.specification().paper;
+    let authors = match &of.authors {
+        Authors::One(name) => name.clone(),
+        Authors::Many(names) => names.join(", "),
+    };
+    html! {
+        section class="chapter" id={ "book-" (paper.key()) } {
+            h3 { (paper.key()) ": " (of.title) }
+            p class="citation" {
+                (authors) ". " (of.venue) "."
+                @if !of.doi.is_empty() { " doi:" (of.doi) "." }
+            }
+            @for entry in entries_of(paper) { (section(entry)) }
+        }
+    }
+}
+
+/// An equation.
+fn section(entry: &Entry) -> Markup {
+    let equation = entry.equation;
+    html! {
+        section class="equation" id=(entry.anchor()) {
+            h4 { (entry.reference) }
+            p class="meaning" { (equation.meaning) }
+            div class="formula" { (formula(&equation.latex)) }
+            p class={ "status " (equation.status) } { (status(&equation.status)) }
+            @if let Some(erratum) = &equation.erratum { (corrected(erratum, &equation.latex)) }
+            @for realisation in &entry.realisations { (realised(realisation, entry)) }
+            (held(entry))
+            (caught(entry))
+        }
+    }
+}
+
+/// The status in words.
+pub fn status(status: &str) -> &'static str {
+    match status {
+        "as-printed" => "The paper prints this form.",
+        "corrected" => "Corrected: the paper prints another form.",
+        _ => "Reconstructed: the paper needs it and does not print it, or the available copy has lost it.",
+    }
+}
+
+/// The printed form beside the right one, and why.
+fn corrected(erratum: &Erratum, latex: &str) -> Markup {
+    html! {
+        div class="erratum" {
+            h5 { "Erratum " code { (erratum.id) } " (" (erratum.kind) ")" }
+            div class="forms" {
+                figure class="printed" { figcaption { "as printed" } (formula(&erratum.printed)) }
+                figure class="right" { figcaption { "corrected" } (formula(latex)) }
+            }
+            p { (erratum.why) }
+            p { "Proof: " (erratum.proof) }
+        }
+    }
+}
+
+/// An item in full in the section of the first equation that it realises, and a link to it in the others.
+fn realised(realisation: &Realisation, entry: &Entry) -> Markup {
+    let item = &realisation.item;
+    let anchor = item.anchor();
+    let at = || html! { code { (item.name) } ", " (item.path) ":" (item.line) };
+    let first = first_of(realisation);
+    if let Some(first) = first.filter(|first| first.reference != entry.reference) {
+        return html! {
+            p class="elsewhere" {
+                a href={ "#" (anchor) } { (at()) } ": " (sentence(&realisation.doc.title, item))
+                ", shown at " a href={ "#" (first.anchor()) } { (first.reference) } "."
+            }
+        };
+    }
+    let doc = &realisation.doc;
+    html! {
+        div class="code" id=(anchor) {
+            h5 { (sentence(&doc.title, item)) }
+            @if !doc.remark.is_empty() { (paragraphs(&doc.remark, item)) }
+            @for part in &doc.parts {
+                @match part.kind {
+                    PartKind::Formula => pre class="text-formula" { (part.text) },
+                    PartKind::Dictionary => (table(&part.text, item, "The letters of the formula")),
+                    PartKind::Derivation => div class="derivation" { (paragraphs(&part.text, item)) },
+                    PartKind::Source => div class="source" { (paragraphs(&format!("Source: {}", part.text), item)) },
+                    PartKind::Errata => div class="errata" { (paragraphs(&format!("Errata: {}", part.text), item)) },
+                    PartKind::Errors => div class="errors" { (paragraphs(&format!("Errors: {}", part.text), item)) },
+                    PartKind::Example => details class="example" {
+                        summary { "Example" }
+                        (paragraphs(&part.text, item))
+                    },
+                    // In lists of their own.
+                    PartKind::Mistakes | PartKind::Evidence => "",
+                }
+            }
+            details class="source-code" {
+                summary { "Code: " (at()) }
+                pre { code class="language-rust" { (item.code) } }
+            }
+        }
+    }
+}
+
+/// The first equation of the book that an item realises.
+fn first_of(realisation: &Realisation) -> Option<&'static Entry> {
+    entries()
+        .iter()
+        .find(|entry| entry.realisations.iter().any(|other| other.item == realisation.item))
+}
+
+/// The tests.
+fn held(entry: &Entry) -> Markup {
+    html! {
+        @if !entry.evidence.is_empty() {
+            h5 { "Held by" }
+            ul class="evidence" {
+                @for evidence in &entry.evidence {
+                    li { code { (evidence.test) } " (" (evidence.kind) "), " (evidence.path) ":" (evidence.line) }
+                }
+            }
+        }
+    }
+}
+
+/// The mistakes and their cases, or why there are none.
+fn caught(entry: &Entry) -> Markup {
+    if let Some(reason) = &entry.equation.outside {
+        return html! { p class="outside" { (reason) } };
+    }
+    let quantities: Vec<&str> = entry.quantities.iter().map(|quantity| quantity.name()).collect();
+    html! {
+        details class="mistakes" {
+            summary {
+                "Mistakes in " @for (index, name) in quantities.iter().enumerate() {
+                    @if index > 0 { ", " }
+                    code { (name) }
+                }
+                ": " (entry.mistakes.len()) ", caught by " (entry.cases().len()) @if entry.cases().len() == 1 { " case" } @else { " cases" }
+            }
+            table {
+                caption { "What is done wrong, or otherwise, in " (entry.reference) }
+                thead { tr { th scope="col" { "name" } th scope="col" { "kind" } th scope="col" { "what you did" } th scope="col" { "case" } } }
+                tbody {
+                    @for variant in &entry.mistakes {
+                        tr {
+                            th scope="row" { code { (variant.id) } }
+                            td { (variant.kind.name()) }
+                            td { (variant.about) }
+                            td { code { (variant.case) } }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The index: from numbers to code, tests and cases, and from code to numbers.
+pub fn index() -> Markup {
+    html! {
+        section class="index" id="book-index" {
+            h3 { "Index" }
+            table class="by-equation" {
+                caption { "Every equation, its code, its tests and the cases that catch mistakes in it" }
+                thead {
+                    tr {
+                        th scope="col" { "equation" } th scope="col" { "status" } th scope="col" { "code" }
+                        th scope="col" { "tests" } th scope="col" { "cases" }
+                    }
+                }
+                tbody { @for entry in entries() { (index_row(entry)) } }
+            }
+            table class="by-code" {
+                caption { "Every item of the source that realises equations" }
+                thead { tr { th scope="col" { "code" } th scope="col" { "where" } th scope="col" { "equations" } } }
+                tbody {
+                    @for realisation in realisations() {
+                        tr {
+                            th scope="row" { (link_to(realisation)) }
+                            td { (realisation.item.path) ":" (realisation.item.line) }
+                            td {
+                                @for (index, reference) in realisation.doc.realises.iter().enumerate() {
+                                    @if index > 0 { ", " }
+                                    a href={ "#" (reference.anchor()) } { (reference) }
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn index_row(entry: &Entry) -> Markup {
+    html! {
+        tr {
+            th scope="row" { a href={ "#" (entry.anchor()) } { (entry.reference) } }
+            td { (entry.equation.status) }
+            td { @for (index, one) in entry.realisations.iter().enumerate() { @if index > 0 { ", " } (link_to(one)) } }
+            td { (list(entry.evidence.iter().map(|evidence| evidence.test.as_str()))) }
+            td { @if entry.equation.outside.is_some() { "outside a step" } @else { (list(entry.cases().into_iter())) } }
+        }
+    }
+}
+
+fn link_to(realisation: &Realisation) -> Markup {
+    html! { a href={ "#" (realisation.item.anchor()) } { code { (realisation.item.name) } } }
+}
+
+fn list<'a>(names: impl Iterator<Item = &'a str>) -> Markup {
+    html! { @for (index, name) in names.enumerate() { @if index > 0 { ", " } code { (name) } } }
+}

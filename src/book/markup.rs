@@ -1,0 +1,151 @@
+//! LaTeX and doc comments as HTML.
+//!
+//! After this file the reader knows that formulas are MathML, which browsers show by themselves, and that links of doc comments lead to
+//! code in the book where it is there, and are names otherwise.
+
+use super::source::Item;
+use super::{Realisation, realisations};
+use maud::{Markup, PreEscaped, html};
+use pulldown_cmark::{BrokenLink, CowStr, Event, Options, Parser, Tag, TagEnd};
+use pulldown_latex::config::DisplayMode;
+use pulldown_latex::{ParserError, RenderConfig, Storage, push_mathml};
+
+/// A formula on a line of its own as MathML, with its LaTeX as annotation.
+///
+/// # Errors
+///
+/// What in it is no LaTeX.
+pub fn math(latex: &str) -> Result<Markup, String> {
+    let storage = Storage::new();
+    let events: Result<Vec<_>, _> = pulldown_latex::Parser::new(latex, &storage).collect();
+    let events = events.map_err(|error| error.to_string())?;
+    // What stands in an annotation is text.
+    let annotation = html! { (latex) }.into_string();
+    let config = RenderConfig {
+        display_mode: DisplayMode::Block,
+        annotation: Some(&annotation),
+        ..RenderConfig::default()
+    };
+    let mut text = String::new();
+    let events = events.into_iter().map(Ok::<_, Box<ParserError>>);
+    push_mathml(&mut text, events, config).map_err(|error| error.to_string())?;
+    Ok(PreEscaped(text))
+}
+
+/// A formula as MathML; one that cannot be read as it is written, which a test excludes.
+pub fn formula(latex: &str) -> Markup {
+    math(latex).unwrap_or_else(|_| html! { pre { (latex) } })
+}
+
+/// Paragraphs of a doc comment.
+pub fn paragraphs(markdown: &str, of: &Item) -> Markup {
+    rendered(events(markdown, of).into_iter())
+}
+
+/// A sentence of a doc comment, without a paragraph around it.
+pub fn sentence(markdown: &str, of: &Item) -> Markup {
+    let is_paragraph = |event: &Event| matches!(event, Event::Start(Tag::Paragraph) | Event::End(TagEnd::Paragraph));
+    rendered(events(markdown, of).into_iter().filter(|event| !is_paragraph(event)))
+}
+
+/// A table of a doc comment, with what its columns and rows are.
+pub fn table(markdown: &str, of: &Item, caption: &str) -> Markup {
+    let mut rows: Vec<Vec<Vec<Event>>> = Vec::new();
+    for event in events(markdown, of) {
+        match event {
+            Event::Start(Tag::TableHead | Tag::TableRow) => rows.push(Vec::new()),
+            Event::Start(Tag::TableCell) => {
+                if let Some(row) = rows.last_mut() {
+                    row.push(Vec::new());
+                }
+            }
+            Event::Start(Tag::Table(_))
+            | Event::End(TagEnd::Table | TagEnd::TableHead | TagEnd::TableRow | TagEnd::TableCell) => {}
+            inside => {
+                if let Some(cell) = rows.last_mut().and_then(|row| row.last_mut()) {
+                    cell.push(inside);
+                }
+            }
+        }
+    }
+    let mut rows = rows
+        .into_iter()
+        .map(|row| row.into_iter().map(|cell| rendered(cell.into_iter())));
+    let header: Vec<Markup> = rows.next().into_iter().flatten().collect();
+    html! {
+        table class="dictionary" {
+            caption { (caption) }
+            thead { tr { @for cell in &header { th scope="col" { (cell) } } } }
+            tbody {
+                @for row in rows {
+                    tr {
+                        @for (index, cell) in row.enumerate() {
+                            @if index == 0 { th scope="row" { (cell) } } @else { td { (cell) } }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn rendered<'a>(events: impl Iterator<Item = Event<'a>>) -> Markup {
+    let mut text = String::new();
+    pulldown_cmark::html::push_html(&mut text, events);
+    PreEscaped(text)
+}
+
+/// The markdown of an item, its links resolved.
+fn events<'a>(markdown: &'a str, of: &Item) -> Vec<Event<'a>> {
+    // A name in brackets is a link to the item of that name.
+    let shortcut = |link: BrokenLink<'a>| Some((link.reference, CowStr::Borrowed("")));
+    let parser = Parser::new_with_broken_link_callback(markdown, Options::ENABLE_TABLES, Some(shortcut));
+    let mut is_link = Vec::new();
+    let mut events = Vec::new();
+    for event in parser {
+        match event {
+            Event::Start(Tag::Link {
+                link_type,
+                dest_url,
+                title,
+                id,
+            }) => {
+                let target = target(&dest_url, of);
+                is_link.push(target.is_some());
+                let to = |dest_url: String| Tag::Link {
+                    link_type,
+                    dest_url: dest_url.into(),
+                    title,
+                    id,
+                };
+                events.extend(target.map(|address| Event::Start(to(address))));
+            }
+            Event::End(TagEnd::Link) => {
+                if is_link.pop() == Some(true) {
+                    events.push(event);
+                }
+            }
+            // Angle brackets of a doc comment are meant.
+            Event::Html(text) | Event::InlineHtml(text) => events.push(Event::Text(text)),
+            other => events.push(other),
+        }
+    }
+    events
+}
+
+/// Where a link leads: an address as it is, the path of an item to its code in the book, if it is there.
+fn target(address: &str, of: &Item) -> Option<String> {
+    if address.contains("://") {
+        return Some(address.to_owned());
+    }
+    let path = address.trim_matches('`').rsplit('@').next().unwrap_or_default();
+    let path = path.trim_end_matches("()").trim_start_matches("Self::");
+    let named: Vec<&Realisation> = realisations().iter().filter(|one| is_named(&one.item, path)).collect();
+    let near = named.iter().find(|one| one.item.path == of.path);
+    near.or(named.first()).map(|one| format!("#{}", one.item.anchor()))
+}
+
+/// Whether a path leads to an item: the type's name counts if it is there.
+fn is_named(item: &Item, path: &str) -> bool {
+    item.name == path || path.ends_with(&format!("::{}", item.name)) || item.name.ends_with(&format!("::{path}"))
+}
