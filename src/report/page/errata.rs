@@ -2,6 +2,7 @@
 //!
 //! After this file the reader knows what is wrong in a paper as printed, why, and which test shows it.
 
+use crate::book::markup::formula;
 use crate::paper::Paper;
 use crate::paper::specification::{Equation, Erratum};
 use maud::{Markup, html};
@@ -16,23 +17,26 @@ pub fn section(paper: Paper) -> Markup {
     html! {
         section aria-labelledby=(format!("{key}-errata")) {
             h3 id=(format!("{key}-errata")) { "What is wrong as printed in " (key) }
-            p { (errata.len()) " of " (paper.specification().all_equations().count()) " equations." }
+            p { "The proofs are in the book of equations. " (errata.len()) " of " (paper.specification().all_equations().count()) " equations are wrong as printed." }
             @for (equation, erratum) in errata { (article(key, equation, erratum)) }
         }
     }
 }
 
+/// An erratum; its proof stands with the equation in the book.
 fn article(key: &str, equation: &Equation, erratum: &Erratum) -> Markup {
+    let anchor = match (equation.number, &equation.name) {
+        (Some(number), _) => format!("#{key}-{number}"),
+        (None, name) => format!("#{key}-{}", name.as_deref().unwrap_or_default()),
+    };
     html! {
         article.erratum id=(erratum.id) {
-            h4 { (key) " " (equation.label()) " " span.id { (erratum.id) } }
-            dl.forms {
-                dt { "as printed" } dd { code { (erratum.printed) } }
-                dt { "corrected" } dd { code { (equation.latex) } }
-            }
+            h4 { a href=(anchor) { (key) " " (equation.label()) } " " span.id { (erratum.id) } }
             p { (erratum.why) }
-            p { b { "Proof. " } (erratum.proof) }
-            @if let Some(test) = &erratum.test { p.judged { b { "Test. " } code { (test) } } }
+            div.forms {
+                figure.printed { figcaption { "as printed" } (formula(&erratum.printed)) }
+                figure.right { figcaption { "corrected" } (formula(&equation.latex)) }
+            }
         }
     }
 }

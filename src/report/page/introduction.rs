@@ -49,7 +49,7 @@ fn holdings() -> Markup {
     let errata = equations.iter().filter(|equation| equation.erratum.is_some()).count();
     let of_kind = |kind: Kind| catalogue().iter().filter(|variant| variant.kind == kind).count();
     let claims: usize = Paper::ALL.iter().map(|paper| paper.specification().claims.len()).sum();
-    let cases = case::all().map_or(0, |cases| cases.len());
+    let cases = case::all().map_or(0, <[case::Case]>::len);
     let holdings = [
         (
             equations.len(),

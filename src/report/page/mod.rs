@@ -23,6 +23,8 @@ mod paper;
 mod table;
 
 use super::figure::NotDrawn;
+use crate::book;
+use crate::paper::Paper;
 use content::Content;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -57,11 +59,27 @@ pub fn html(content: &Content) -> Result<String, NotDrawn> {
                 main #content {
                     (introduction::section(content))
                     @for paper in &papers { (paper) }
+                    (equations())
                 }
             }
         }
     };
     Ok(page.into_string())
+}
+
+/// The book of equations: the way from a number to everything about it, then the papers' equations in their order.
+fn equations() -> Markup {
+    html! {
+        section.book aria-labelledby="book" {
+            h2 #book { "The book of equations" }
+            p {
+                "Every equation with its derivation, the code that realises it, the tests that hold it, and the mistakes that are made in it "
+                "with the cases that catch them. Code that realises several equations stands with the first."
+            }
+            details { summary { "All equations, by number and by code" } (book::html::index()) }
+            @for paper in Paper::ALL { (book::html::chapter(paper)) }
+        }
+    }
 }
 
 /// The title, and what the page was made from.
@@ -97,9 +115,11 @@ fn contents(content: &Content) -> Markup {
                             a href=(format!("#{key}-figures")) { "figures" }
                             " " a href=(format!("#{key}-claims")) { "claims" }
                             " " a href=(format!("#{key}-errata")) { "errata" }
+                            " " a href=(format!("#book-{key}")) { "equations" }
                         }
                     }
                 }
+                li { a href="#book" { "The book of equations" } }
             }
         }
     }
