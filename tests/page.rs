@@ -250,8 +250,8 @@ fn every_claim_erratum_and_equation_of_every_paper_has_its_place() {
         let errata = specification
             .all_equations()
             .filter_map(|equation| equation.erratum.as_ref());
-        let claims = specification.claims.iter().map(|claim| &claim.id);
-        for id in errata.map(|erratum| &erratum.id).chain(claims) {
+        let claims = specification.claims.iter().map(|claim| format!("claim-{}", claim.id));
+        for id in errata.map(|erratum| format!("erratum-{}", erratum.id)).chain(claims) {
             assert!(ids.contains(id.as_str()), "{id}");
         }
         for part in ["figures", "claims", "errata"] {

@@ -30,7 +30,7 @@ fn article(key: &str, equation: &Equation, erratum: &Erratum) -> Markup {
         (None, name) => format!("#{key}-{}", name.as_deref().unwrap_or_default()),
     };
     html! {
-        article.erratum id=(erratum.id) {
+        article.erratum id={ "erratum-" (erratum.id) } {
             h4 { a href=(anchor) { (key) " " (equation.label()) } " " span.id { (erratum.id) } }
             p { (erratum.why) }
             div.forms {

@@ -29,7 +29,7 @@ pub fn section(of_paper: &OfPaper) -> Markup {
             h3 id=(format!("{key}-claims")) { "What " (key) " claims" }
             p { (counts(&of_paper.judgements)) ". Each verdict is computed; the evidence says from what." }
             @for judgement in &of_paper.judgements {
-                article.claim id=(judgement.id) {
+                article.claim id={ "claim-" (judgement.id) } {
                     h4 { (mark(judgement.verdict)) " " span.id { (judgement.id) } }
                     blockquote { p { (judgement.quote) } footer { (judgement.place) } }
                     p { b { "Question. " } (judgement.question) }
