@@ -9,8 +9,8 @@ use super::simulation::{Filter, Path, Simulation};
 use super::specification::Choices;
 use crate::gaussian::Gaussian;
 use crate::imm::{Equations, Problem};
-use crate::model::{Conversion, Measurement};
 use crate::model::motion::{constant_velocity, coordinated_turn};
+use crate::model::{Conversion, Measurement};
 use crate::rule::{Rule, RuleName};
 use nalgebra::{Matrix4, Vector2, Vector4};
 
@@ -250,7 +250,11 @@ impl Simulation for Scenario {
             None => *z,
         };
         Some(Path {
-            truth: draw.truth.iter().map(|state| Vector2::new(state[0], state[2])).collect(),
+            truth: draw
+                .truth
+                .iter()
+                .map(|state| Vector2::new(state[0], state[2]))
+                .collect(),
             measured: draw.measurements.iter().map(position).collect(),
             sensor,
         })

@@ -402,7 +402,11 @@ pub fn mode_probabilities_csv(reproduction: &Reproduction) -> String {
             for (mode, (probability, standard_error)) in filter.modes.iter().zip(estimates) {
                 let truth = u8::from(reproduction.is_true(mode, k));
                 let time = reproduction.times[k];
-                let _ = writeln!(text, "{time},{},{mode},{probability},{truth},{standard_error}", filter.name);
+                let _ = writeln!(
+                    text,
+                    "{time},{},{mode},{probability},{truth},{standard_error}",
+                    filter.name
+                );
             }
         }
     }
