@@ -241,11 +241,11 @@ fn out_writes_the_files_that_it_names() {
     let value: Value = serde_json::from_str(&text("zhu2016.json")).unwrap();
     assert_eq!(value["reproduction"]["runs"], 2);
     for (name, head, columns) in [
-        ("zhu2016-errors.csv", "time,filter,quantity,rmse", 4),
+        ("zhu2016-errors.csv", "time,filter,quantity,rmse,standard_error", 5),
         (
             "zhu2016-mode-probabilities.csv",
-            "time,filter,mode,probability,truth",
-            5,
+            "time,filter,mode,probability,truth,standard_error",
+            6,
         ),
     ] {
         let text = text(name);
@@ -255,8 +255,12 @@ fn out_writes_the_files_that_it_names() {
             assert_eq!(line.split(',').count(), columns, "{name}: {line}");
         }
     }
-    assert!(!directory.join("zhu2016-path.svg").exists(), "the paper shows no run");
-    for name in ["zhu2016-errors.svg", "zhu2016-mode-probabilities.svg"] {
+    assert!(text("zhu2016-published.svg").contains("Table 1: RMSE_X"));
+    for name in [
+        "zhu2016-errors.svg",
+        "zhu2016-mode-probabilities.svg",
+        "zhu2016-path.svg",
+    ] {
         let figure = text(name);
         assert!(
             figure.starts_with("<svg") && figure.trim_end().ends_with("</svg>"),

@@ -261,7 +261,33 @@ fn every_claim_erratum_and_equation_of_every_paper_has_its_place() {
                 paper.key()
             );
         }
+        for entry in book::entries_of(paper) {
+            assert!(ids.contains(entry.anchor().as_str()), "{}", entry.reference);
+        }
     }
+}
+
+#[test]
+fn every_formula_has_the_parts_that_its_marks_need() {
+    assert_rule(
+        |page| {
+            let document = Html::parse_document(page);
+            let without = |count: usize, marks: &str| -> Vec<String> {
+                let marks = all(&document, marks).into_iter();
+                let wrong = marks.filter(|mark| mark.child_elements().count() != count);
+                wrong.map(|mark| mark.html()).collect()
+            };
+            let mut faults = without(2, "msup, msub, mfrac, mroot, munder, mover");
+            faults.extend(without(3, "msubsup, munderover"));
+            faults.extend(all(&document, "merror").iter().map(ElementRef::html));
+            faults
+        },
+        &[
+            "<math><msup><mi>x</mi></msup></math>",
+            "<math><msubsup><mi>x</mi><mn>2</mn></msubsup></math>",
+            "<math><merror><mi>x</mi></merror></math>",
+        ],
+    );
 }
 
 #[test]

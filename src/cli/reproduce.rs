@@ -9,6 +9,7 @@ use immaculate::paper::specification::Choices;
 use immaculate::paper::sustika2015::divergence;
 use immaculate::paper::{Effort, Paper};
 use immaculate::report;
+use immaculate::report::reproduction::Comparison;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -32,7 +33,7 @@ pub struct Reproduce {
     /// goes on from where it was interrupted
     #[arg(long, conflicts_with = "brief")]
     sweep: bool,
-    /// Write the results as JSON, and errors and mode probabilities over time as CSV and SVG, to this directory
+    /// Write the results as JSON, and errors, mode probabilities and the first run as CSV and SVG, to this directory
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Print JSON instead of tables
@@ -63,11 +64,15 @@ pub fn run(arguments: &Reproduce) -> Result<Done, Refusal> {
     let bar = progress_bar(total as u64, "reproducing");
     let advance: Progress = &|| bar.inc(1);
     let mut text = String::new();
-    let mut values = Vec::new();
+    let (mut values, mut published) = (Vec::new(), Vec::new());
     for planned in plan {
-        let (of_paper, value) = one_simulation(arguments, &planned, effort, advance)?;
+        let (of_paper, value, comparisons) = one_simulation(arguments, &planned, effort, advance)?;
         values.push(value);
         text.push_str(&of_paper);
+        published.push((planned.paper, comparisons));
+    }
+    if let Some(directory) = &arguments.out {
+        write_published(directory, &published)?;
     }
     let mut answer = json!({ "papers": values });
     if asks_for_cause {
@@ -115,13 +120,13 @@ fn plan(arguments: &Reproduce, papers: &[Paper], chosen: &Choices) -> Result<Vec
     Ok(plan)
 }
 
-/// Runs a simulation with its open choices: the text, and the same as JSON.
+/// Runs a simulation with its open choices: the text, the same as JSON, and the published figures beside the computed ones.
 fn one_simulation(
     arguments: &Reproduce,
     planned: &Planned,
     effort: Effort,
     advance: Progress,
-) -> Result<(String, serde_json::Value), Refusal> {
+) -> Result<(String, serde_json::Value, Vec<Comparison>), Refusal> {
     let paper = planned.paper;
     let reproductions = planned
         .choices
@@ -145,7 +150,20 @@ fn one_simulation(
         text.push_str(&report::reproduction::alternatives(paper, &reproductions));
     }
     text.push('\n');
-    Ok((text, value))
+    Ok((text, value, comparisons))
+}
+
+/// The published figures of each paper beside the computed ones of all its simulations, as figures.
+fn write_published(directory: &Path, published: &[(Paper, Vec<Comparison>)]) -> Result<(), Refusal> {
+    for of_paper in published.chunk_by(|a, b| a.0 == b.0) {
+        let paper = of_paper[0].0;
+        let comparisons: Vec<Comparison> = of_paper.iter().flat_map(|(_, of_one)| of_one.clone()).collect();
+        if let Some(figure) = report::published::published_and_computed(paper, &comparisons) {
+            let name = format!("{}-published.svg", paper.key());
+            write_file(&directory.join(name), &figure_of(figure)?)?;
+        }
+    }
+    Ok(())
 }
 
 /// Where converted measurements can be trusted, as a table and, in a directory, as a figure.
@@ -192,16 +210,8 @@ fn check_that_some_paper_has(papers: &[Paper], choices: &Choices) -> Result<(), 
 }
 
 /// A figure, or why it could not be drawn.
-fn figure_of(drawn: Result<String, report::figure::NotDrawn>) -> Result<String, Refusal> {
+fn figure_of(drawn: Result<String, report::chart::NotDrawn>) -> Result<String, Refusal> {
     drawn.map_err(|error| Refusal::Output(error.to_string()))
-}
-
-/// What the names of a reproduction's files begin with: the paper, and the scenario where it has several.
-fn file_stem(reproduction: &immaculate::paper::result::Reproduction) -> String {
-    match reproduction.choices.chosen("scenario") {
-        Some(scenario) => format!("{}-{scenario}", reproduction.paper),
-        None => reproduction.paper.to_owned(),
-    }
 }
 
 /// The files of `reproduce --out`: everything as JSON, errors over time and mode probabilities as CSV and as figures.
@@ -210,7 +220,7 @@ fn write_files(
     reproduction: &immaculate::paper::result::Reproduction,
     value: &serde_json::Value,
 ) -> Result<(), Refusal> {
-    let paper = file_stem(reproduction);
+    let paper = report::figure::stem(reproduction);
     let mut files = vec![
         (format!("{paper}.json"), json_text(value)),
         (
@@ -233,7 +243,7 @@ fn write_files(
     if let Some(first_run) = &reproduction.first_run {
         files.push((
             format!("{paper}-path.svg"),
-            figure_of(report::figure::path(reproduction, first_run))?,
+            figure_of(report::path::path(reproduction, first_run))?,
         ));
         files.push((
             format!("{paper}-path.csv"),

@@ -193,13 +193,13 @@ impl Comparison<'_> {
             .map(|of_runs| mean(&of_runs))
     }
 
-    /// RMSE(k) of a contestant at every step.
-    pub fn rmse(&self, contestant: usize, quantity: Quantity) -> Vec<f64> {
+    /// RMSE(k) of a contestant at every step, each with its standard error over the runs.
+    pub fn rmse(&self, contestant: usize, quantity: Quantity) -> Vec<Estimate> {
         let runs = self.completed(&[contestant]);
         let at_step = |k: usize| {
             let squared = |run: &&Vec<Run>| quantity.squared(&run[contestant].errors[k]);
             let squares: Vec<f64> = runs.iter().map(squared).collect();
-            rmse::root_mean_square(&squares)
+            root_mean_square(&squares)
         };
         (0..self.steps()).map(at_step).collect()
     }
@@ -264,13 +264,13 @@ impl Comparison<'_> {
         (0..changes).map(of_change).collect()
     }
 
-    /// The mean over runs of a contestant's mode probabilities, `[step][mode]`.
-    pub fn mean_mode_probabilities(&self, contestant: usize) -> Vec<Vec<f64>> {
+    /// The mean over runs of a contestant's mode probabilities with its standard error, `[step][mode]`.
+    pub fn mean_mode_probabilities(&self, contestant: usize) -> Vec<Vec<Estimate>> {
         let runs = self.completed(&[contestant]);
         let modes = self.scenario.filters()[contestant].modes.len();
         let at = |k: usize, j: usize| {
             let of_run = |run: &&Vec<Run>| run[contestant].mode_probabilities[k][j];
-            runs.iter().map(of_run).sum::<f64>() / runs.len() as f64
+            mean(&runs.iter().map(of_run).collect::<Vec<f64>>())
         };
         let steps = 0..self.steps();
         steps.map(|k| (0..modes).map(|j| at(k, j)).collect()).collect()
@@ -301,7 +301,7 @@ pub struct Reproduction {
     /// Those of their percentage fit errors, where the paper has this measure.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub fit_differences: Vec<FitDifference>,
-    /// The first run, where the paper shows one.
+    /// The first run, where the filters have one in common.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub first_run: Option<FirstRun>,
 }
@@ -315,6 +315,9 @@ pub struct FirstRun {
     pub measured: Vec<[f64; 2]>,
     /// The estimated ones of each filter, as far as it came.
     pub estimates: Vec<Vec<[f64; 2]>>,
+    /// Where the sensor is, if it is anywhere.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sensor: Option<[f64; 2]>,
 }
 
 /// What one filter did.
@@ -341,6 +344,8 @@ pub struct Performance {
     pub rmse: Vec<ErrorHistory>,
     /// Mean mode probabilities, `[step][mode]`.
     pub mode_probabilities: Vec<Vec<f64>>,
+    /// Their standard errors.
+    pub mode_probability_standard_errors: Vec<Vec<f64>>,
     /// Consistency with the truth: the expectation for a matched filter is the number of components of the state.
     pub nees: Consistency,
     /// Consistency with the measurements: the expectation for a matched filter is the number of components of the measurement.
@@ -377,6 +382,8 @@ pub struct ErrorHistory {
     pub quantity: Quantity,
     /// RMSE(k), one a step.
     pub values: Vec<f64>,
+    /// Their standard errors over the runs.
+    pub standard_errors: Vec<f64>,
 }
 
 /// A normalised squared error against its bounds.
@@ -518,6 +525,7 @@ fn first_run(path: &Path, results: &[Vec<Run>]) -> FirstRun {
             .map(|position| [position[0], position[1]])
             .collect(),
         estimates: results.first().into_iter().flatten().map(of_filter).collect(),
+        sensor: path.sensor,
     }
 }
 
@@ -541,10 +549,16 @@ fn performance(comparison: &Comparison, c: usize) -> Performance {
         quantity,
         estimate: comparison.error(c, quantity),
     };
-    let history = |quantity| ErrorHistory {
-        quantity,
-        values: comparison.rmse(c, quantity),
+    let history = |quantity| {
+        let (values, standard_errors) = apart(&comparison.rmse(c, quantity));
+        ErrorHistory {
+            quantity,
+            values,
+            standard_errors,
+        }
     };
+    let probabilities = comparison.mean_mode_probabilities(c);
+    let (mode_probabilities, mode_probability_standard_errors) = probabilities.iter().map(|step| apart(step)).unzip();
     Performance {
         name: filter.name,
         modes: filter.modes,
@@ -555,12 +569,19 @@ fn performance(comparison: &Comparison, c: usize) -> Performance {
         errors: Quantity::ALL.into_iter().map(error).collect(),
         fit_error: comparison.fit_error(c),
         rmse: Quantity::ALL.into_iter().map(history).collect(),
-        mode_probabilities: comparison.mean_mode_probabilities(c),
+        mode_probabilities,
+        mode_probability_standard_errors,
         nees: consistency(comparison, c, nees, state_components, |run| &run.nees),
         nis: consistency(comparison, c, nis, measured_components, |run| &run.nis),
         delays: delays(comparison, c),
         microseconds_per_step: 1e6 * seconds / steps as f64,
     }
+}
+
+/// Figures, and their standard errors.
+fn apart(estimates: &[Estimate]) -> (Vec<f64>, Vec<f64>) {
+    let pair = |estimate: &Estimate| (estimate.value, estimate.standard_error);
+    estimates.iter().map(pair).unzip()
 }
 
 /// The mean of a normalised squared error, and how often its mean over runs is inside the bounds of a matched filter.

@@ -5,12 +5,12 @@
 
 use super::monte_carlo::{Generator, Run, track};
 use super::result::Average;
-use super::simulation::{Filter, Simulation};
+use super::simulation::{Filter, Path, Simulation};
 use super::specification::Choices;
 use crate::gaussian::Gaussian;
 use crate::imm::{Equations, Problem};
-use crate::model::Measurement;
 use crate::model::motion::{constant_velocity, coordinated_turn};
+use crate::model::{Conversion, Measurement};
 use crate::rule::{Rule, RuleName};
 use nalgebra::{Matrix4, Vector2, Vector4};
 
@@ -234,5 +234,29 @@ impl Simulation for Scenario {
         contestants
             .map(|(index, contestant)| track(contestant, &draw(run * count + index)))
             .collect()
+    }
+
+    fn first_path(&self, seed: u64) -> Option<Path> {
+        if !self.paired {
+            return None;
+        }
+        let draw = self.draw(&mut Generator::new(seed, 0));
+        let sensor = match &self.measurement {
+            Measurement::Polar { sensor, .. } => Some(*sensor),
+            _ => None,
+        };
+        let position = |z: &Vector2<f64>| match sensor {
+            Some(sensor) => Conversion::Standard.position(&z[0], &z[1], &0.0) + Vector2::from(sensor),
+            None => *z,
+        };
+        Some(Path {
+            truth: draw
+                .truth
+                .iter()
+                .map(|state| Vector2::new(state[0], state[2]))
+                .collect(),
+            measured: draw.measurements.iter().map(position).collect(),
+            sensor,
+        })
     }
 }

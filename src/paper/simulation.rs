@@ -28,6 +28,8 @@ pub struct Path {
     pub truth: Vec<Vector2<f64>>,
     /// The measured positions of steps 1, 2, …
     pub measured: Vec<Vector2<f64>>,
+    /// Where the sensor is, if positions are not measured themselves.
+    pub sensor: Option<[f64; 2]>,
 }
 
 /// A paper's simulation with every choice made.
@@ -52,8 +54,6 @@ pub trait Simulation: Debug + Sync {
     fn filters(&self) -> Vec<Filter>;
     /// What every filter did in run `run`, counted from 0.
     fn one_run(&self, run: usize, seed: u64) -> Vec<Run>;
-    /// The first run's truth and measurements, where the paper shows one.
-    fn first_path(&self, _seed: u64) -> Option<Path> {
-        None
-    }
+    /// The first run's truth and measurements; none where each filter has its own.
+    fn first_path(&self, seed: u64) -> Option<Path>;
 }

@@ -4,13 +4,15 @@
 //! textbook means, and on which side of it the radar of sustika2015 is. The numbers are the closed forms of
 //! [`conversion_validity`](crate::model::conversion_validity).
 
-use super::figure::{NotDrawn, not_drawn};
+use super::chart::{
+    Area, Axis, Caption, Drawn, Key, Line, NotDrawn, draw_lines, figure as whole, looks, not_drawn, panel,
+};
+use super::palette::{INK, MEASURED, SHADE};
 use super::wrapped;
 use crate::model::Conversion;
 use crate::model::conversion_moments::attenuation;
 use crate::model::conversion_validity::{Validity, nonlinearity, validity};
 use crate::number::Real;
-use plotters::coord::Shift;
 use plotters::prelude::*;
 
 /// The deviations of the bearing that are shown, degrees.
@@ -188,28 +190,12 @@ fn meaning() -> String {
 
 // The figure
 
-/// One colour a conversion, told apart by people who see colours differently (Okabe and Ito 2008), and the width of its line, thinner
-/// over the one before.
-const STYLES: [(RGBColor, u32); 4] = [
-    (RGBColor(0, 0, 0), 5),
-    (RGBColor(230, 159, 0), 5),
-    (RGBColor(0, 114, 178), 2),
-    (RGBColor(0, 158, 115), 2),
-];
-/// The band within which error and claim agree.
-const BAND: RGBColor = RGBColor(232, 232, 232);
-/// Marks of the rule of thumb and of sustika2015.
-const MARK: RGBColor = RGBColor(213, 94, 0);
-const WIDTH: u32 = 1000;
-const LEGEND_WIDTH: u32 = 170;
-const PANEL_HEIGHT: u32 = 260;
+const PANEL_HEIGHT: u32 = 250;
 /// The deviations of the columns, degrees.
 const COLUMNS: [f64; 2] = [1.0, 20.0];
 /// ρ to the right end of the panels.
 const LAST: f64 = 1.6;
-const POINTS: i32 = 320;
-
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+const POINTS: i32 = 120;
 
 /// What a row of panels shows.
 struct Row {
@@ -234,28 +220,28 @@ const ROWS: [Row; 4] = [
         within: SMALL_BIAS,
     },
     Row {
-        title: "Along the measured line of sight",
+        title: "Along the measured line",
         label: "error/claim",
         lowest: 0.0,
-        highest: 3.0,
+        highest: 3.1,
         value: |validity| validity.as_measured[0],
         right: 1.0,
         within: TOLERANCE,
     },
     Row {
-        title: "Along the true line of sight",
+        title: "Along the true line",
         label: "error/claim",
         lowest: 0.0,
-        highest: 1.5,
+        highest: 1.58,
         value: |validity| validity.as_true[0],
         right: 1.0,
         within: TOLERANCE,
     },
     Row {
-        title: "Across the measured line of sight",
+        title: "Across the measured line",
         label: "error/claim",
         lowest: 0.0,
-        highest: 1.5,
+        highest: 1.58,
         value: |validity| validity.as_measured[1],
         right: 1.0,
         within: TOLERANCE,
@@ -268,120 +254,64 @@ const ROWS: [Row; 4] = [
 ///
 /// [`NotDrawn`] when the figure cannot be drawn.
 pub fn figure() -> Result<String, NotDrawn> {
-    let mut svg = String::new();
-    {
-        let rows = u32::try_from(ROWS.len()).unwrap_or(1);
-        let root = SVGBackend::with_string(&mut svg, (WIDTH, PANEL_HEIGHT * rows)).into_drawing_area();
-        root.fill(&WHITE).map_err(not_drawn)?;
-        let (panels, legend) = root.split_horizontally(WIDTH - LEGEND_WIDTH);
-        let areas = panels.split_evenly((ROWS.len(), COLUMNS.len()));
+    let caption = Caption {
+        name: "sustika2015-conversions".to_owned(),
+        title: "Where a converted measurement can be trusted".to_owned(),
+        note: "Error: mean squared error given the truth. Claim: mean of the variance in R. σ_θ = 0.1° and 4° look as 1° does. Lines begin \
+               at r = 3 σ_r. Dotted: sustika2015 at 1.4 km, σ_θ = 1° and 4°."
+            .to_owned(),
+        says: table().replace(['\n', '─'], " ").split_whitespace().collect::<Vec<_>>().join(" "),
+        has_cells: false,
+    };
+    let names = Conversion::ALL.map(|conversion| conversion.name().to_owned());
+    let lines = names.into_iter().zip(looks(Conversion::ALL.len()));
+    let mut legend: Vec<(String, Key)> = lines.map(|(name, look)| (name, Key::Line(look))).collect();
+    legend.push(("right within 0.1 (bias 0.2)".to_owned(), Key::Area(SHADE, 1.0)));
+    legend.push(("rule of thumb, ρ = 0.4".to_owned(), Key::Thin(INK, 7)));
+    legend.push(("sustika2015".to_owned(), Key::Thin(MEASURED, 3)));
+    let rows = u32::try_from(ROWS.len()).unwrap_or(1);
+    whole(&caption, &legend, PANEL_HEIGHT * rows, |area| {
+        let areas = area.split_evenly((ROWS.len(), COLUMNS.len()));
         let places = ROWS
             .iter()
             .flat_map(|row| COLUMNS.iter().map(move |column| (row, column)));
-        for (area, (row, degrees)) in areas.iter().zip(places) {
-            draw_panel(area, row, *degrees)?;
-        }
-        draw_legend(&legend)?;
-        root.present().map_err(not_drawn)?;
-    }
-    Ok(svg)
+        areas
+            .iter()
+            .zip(places)
+            .try_for_each(|(area, (row, degrees))| draw_panel(area, row, *degrees))
+    })
 }
 
-fn draw_panel(area: &Area, row: &Row, degrees: f64) -> Result<(), NotDrawn> {
-    let mut chart = ChartBuilder::on(area)
-        .caption(format!("{}, σ_θ = {degrees}°", row.title), ("sans-serif", 15))
-        .margin(8)
-        .margin_right(16)
-        .x_label_area_size(35)
-        .y_label_area_size(50)
-        .build_cartesian_2d(0.0..LAST, row.lowest..row.highest)
-        .map_err(not_drawn)?;
+fn draw_panel(area: &Area, row: &Row, degrees: f64) -> Drawn {
+    let x = Axis::new(0.0..LAST, "ρ = r σ_θ²/σ_r", false);
+    let mut y = Axis::new(row.lowest..row.highest, row.label, false);
+    y.format = |value| format!("{:.1}", (10.0 * value).round() / 10.0 + 0.0);
+    let mut chart = panel(area, &format!("{}, σ_θ = {degrees}°", row.title), [&x, &y], &[])?;
     let band = [(0.0, row.right - row.within), (LAST, row.right + row.within)];
-    let band = Rectangle::new(band, BAND.filled());
-    chart.draw_series([band]).map_err(not_drawn)?;
     chart
-        .configure_mesh()
-        .disable_mesh()
-        .x_desc("ρ = r σ_θ²/σ_r")
-        .y_desc(row.label)
-        .x_label_formatter(&|rho| format!("{rho:.1}"))
-        .y_label_formatter(&|value| format!("{:.1}", (10.0 * value).round() / 10.0 + 0.0))
-        .draw()
+        .draw_series([Rectangle::new(band, SHADE.filled())])
         .map_err(not_drawn)?;
-    let mut marks = vec![RULE];
+    let mut marks = vec![(RULE, INK, 7)];
     if degrees < BEARING_DEVIATIONS[1] {
-        marks.extend(BEARING_DEVIATIONS.map(|degrees| nonlinearity(&RANGE, &RANGE_DEVIATION, &variance_of(degrees))));
+        let of_radar = |degrees| nonlinearity(&RANGE, &RANGE_DEVIATION, &variance_of(degrees));
+        marks.extend(BEARING_DEVIATIONS.map(|degrees| (of_radar(degrees), MEASURED, 3)));
     }
-    for (index, rho) in marks.into_iter().enumerate() {
+    for (rho, colour, dash) in marks {
         let ends = [(rho, row.lowest), (rho, row.highest)];
-        let style = MARK.stroke_width(1);
-        if index == 0 {
-            let dashed = DashedLineSeries::new(ends, 6, 4, style);
-            chart.draw_series(dashed).map_err(not_drawn)?;
-        } else {
-            let dotted = DashedLineSeries::new(ends, 2, 4, style);
-            chart.draw_series(dotted).map_err(not_drawn)?;
-        }
+        let dashed = DashedLineSeries::new(ends, dash, dash, colour.stroke_width(2));
+        chart.draw_series(dashed).map_err(not_drawn)?;
     }
     // From three σ_r on: nearer, the range itself may be measured as negative.
     let first = 3.0 * variance_of(degrees);
-    for (conversion, (colour, width)) in Conversion::ALL.into_iter().zip(STYLES) {
-        let points = (0..=POINTS)
+    let line = |(conversion, look)| Line {
+        look,
+        points: (0..=POINTS)
             .map(|i| first + (LAST - first) * f64::from(i) / f64::from(POINTS))
             .map(|rho| (rho, (row.value)(&at(conversion, rho, degrees))))
-            .filter(|(_, value)| (row.lowest..=row.highest).contains(value));
-        let line = LineSeries::new(points, colour.stroke_width(width));
-        chart.draw_series(line).map_err(not_drawn)?;
-    }
-    Ok(())
-}
-
-fn draw_legend(legend: &Area) -> Result<(), NotDrawn> {
-    let text = |words: &str, y: i32| Text::new(words.to_owned(), (30, y - 6), ("sans-serif", 13));
-    let mut y = 45;
-    for (conversion, (colour, width)) in Conversion::ALL.into_iter().zip(STYLES) {
-        let line = PathElement::new(vec![(2, y), (24, y)], colour.stroke_width(width));
-        legend.draw(&line).map_err(not_drawn)?;
-        legend.draw(&text(conversion.name(), y)).map_err(not_drawn)?;
-        y += 20;
-    }
-    y += 10;
-    let band = Rectangle::new([(2, y - 6), (24, y + 6)], BAND.filled());
-    legend.draw(&band).map_err(not_drawn)?;
-    legend
-        .draw(&text("right within 0.1 (bias 0.2)", y))
-        .map_err(not_drawn)?;
-    for (dashes, words) in [
-        (vec![(2, 8), (12, 18), (22, 24)], &["rule of thumb, ρ = 0.4"][..]),
-        (
-            vec![(2, 4), (8, 10), (14, 16), (20, 22)],
-            &["sustika2015 at 1.4 km,", "σ_θ = 1° and 4°"],
-        ),
-    ] {
-        y += 20;
-        for (from, to) in dashes {
-            let dash = PathElement::new(vec![(from, y), (to, y)], MARK.stroke_width(1));
-            legend.draw(&dash).map_err(not_drawn)?;
-        }
-        for (line, words) in (0..).zip(words) {
-            legend.draw(&text(words, y + 16 * line)).map_err(not_drawn)?;
-        }
-    }
-    y += 46;
-    for words in [
-        "error: mean squared error",
-        "given the truth",
-        "claim: mean of the variance",
-        "in R",
-        "",
-        "σ_θ = 0.1° and 4° look",
-        "as 1° does",
-        "",
-        "lines begin at r = 3 σ_r",
-    ] {
-        let words = Text::new(words, (2, y - 6), ("sans-serif", 12));
-        legend.draw(&words).map_err(not_drawn)?;
-        y += 16;
-    }
-    Ok(())
+            .filter(|(_, value)| (row.lowest..=row.highest).contains(value))
+            .collect(),
+        band: Vec::new(),
+    };
+    let lines = Conversion::ALL.into_iter().zip(looks(Conversion::ALL.len())).map(line);
+    draw_lines(&mut chart, &lines.collect::<Vec<_>>())
 }

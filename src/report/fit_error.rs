@@ -2,29 +2,24 @@
 //!
 //! After this file the reader can see how the percentage fit errors of the filters change with the noise that they take for granted, and
 //! whether it is the noise or the cut of the bearings at ±π that makes the unscented filter diverge. A line is a mean over runs, the band
-//! around it one standard error to either side; where a filter diverges, the axis is logarithmic. Filters that coincide are still seen:
-//! each line is drawn thinner over the one before.
+//! around it two standard errors to either side; where a filter diverges, the axis is logarithmic.
 
-use super::figure::{NotDrawn, not_drawn};
+use super::chart::{
+    Area, Axis, Caption, Drawn, Key, Line, Look, NotDrawn, draw_lines, draw_path, figure, looks, panel, plain,
+};
+use super::palette::INK;
 use super::{standard_errors, table};
+use crate::number::Real;
 use crate::paper::result::Reproduction;
 use crate::paper::specification::Specification;
 use crate::paper::sustika2015::sweep::{FILTERS, Fit, Parameter, Point, Setting, Trajectory};
 use crate::paper::sustika2015::{DIVERGENT_FIT_ERROR, GOOD_FIT_ERROR};
 use crate::statistics::Estimate;
-use plotters::coord::Shift;
-use plotters::coord::ranged1d::{Ranged, ValueFormatter};
-use plotters::coord::types::RangedCoordf64;
-use plotters::prelude::*;
 use std::fmt::Write;
 
-/// One colour a filter, told apart by people who see colours differently (Okabe and Ito 2008).
-const COLOURS: [RGBColor; 3] = [RGBColor(0, 114, 178), RGBColor(0, 158, 115), RGBColor(213, 94, 0)];
-const WIDTH: u32 = 1000;
 const PANEL_HEIGHT: u32 = 330;
-const LEGEND_WIDTH: u32 = 190;
-
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+/// Where a logarithmic axis begins, %.
+const LEAST: f64 = 1.0;
 
 /// The sweep as text: one table a trajectory and parameter, ten values of each, and what all of them say together.
 pub fn text(sweep: &[(Setting, Point)], runs: usize) -> String {
@@ -154,106 +149,80 @@ fn summary(sweep: &[(Setting, Point)], trajectory: Trajectory, runs: usize) -> S
 ///
 /// [`NotDrawn`] when the figure cannot be drawn.
 pub fn draw(sweep: &[(Setting, Point)], trajectory: Trajectory, runs: usize) -> Result<String, NotDrawn> {
-    let mut svg = String::new();
-    {
-        let root = SVGBackend::with_string(&mut svg, (WIDTH, 2 * PANEL_HEIGHT)).into_drawing_area();
-        root.fill(&WHITE).map_err(not_drawn)?;
-        for (area, parameter) in root.split_evenly((2, 1)).iter().zip(Parameter::ALL) {
-            let points = points_of(sweep, trajectory, parameter);
-            draw_panel(
-                area,
-                &points,
-                &format!("{}; {runs} runs", title(trajectory, parameter)),
-                parameter,
-            )?;
-        }
-        root.present().map_err(not_drawn)?;
-    }
-    Ok(svg)
-}
-
-fn draw_panel(area: &Area, points: &[(f64, Point)], title: &str, parameter: Parameter) -> Result<(), NotDrawn> {
-    let (area, legend) = area.split_horizontally(WIDTH - LEGEND_WIDTH);
-    let edges = || points.iter().flat_map(|(_, point)| point.fits.iter().flat_map(band));
-    let highest = edges().filter(|edge| edge.is_finite()).fold(GOOD_FIT_ERROR, f64::max);
-    let last = points.last().map_or(1.0, |(value, _)| *value);
-    let mut chart = ChartBuilder::on(&area);
-    chart
-        .caption(title, ("sans-serif", 15))
-        .margin(10)
-        .margin_right(20)
-        .x_label_area_size(35)
-        .y_label_area_size(55);
-    if highest > DIVERGENT_FIT_ERROR {
-        let chart = chart.build_cartesian_2d(0.0..last, (1.0..1.3 * highest).log_scale());
-        draw_lines(&mut chart.map_err(not_drawn)?, points, parameter)?;
-    } else {
-        let chart = chart.build_cartesian_2d(0.0..last, 0.0..1.1 * highest);
-        draw_lines(&mut chart.map_err(not_drawn)?, points, parameter)?;
-    }
-    draw_legend(&legend)
-}
-
-/// One standard error below and above the mean.
-fn band(fit: &Fit) -> [f64; 2] {
-    let Estimate { value, standard_error } = fit.mean;
-    // A logarithmic axis has no place for what is not positive; there it begins at 1 %.
-    [(value - standard_error).max(0.5), value + standard_error]
-}
-
-type Chart<'a, 'b, Y> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, Y>>;
-
-fn draw_lines<Y>(chart: &mut Chart<Y>, points: &[(f64, Point)], parameter: Parameter) -> Result<(), NotDrawn>
-where
-    Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
-{
-    chart
-        .configure_mesh()
-        .disable_x_mesh()
-        .light_line_style(TRANSPARENT)
-        .x_desc(match parameter {
-            Parameter::NoiseDensity => "q of the filters (m²/s³, m²/s⁵)",
-            Parameter::BearingDegrees => "σ_θ of the filters (°)",
-        })
-        .y_desc("PFE (%)")
-        .x_label_formatter(&|x| format!("{x:.1}"))
-        .y_label_formatter(&|y| format!("{y}"))
-        .draw()
-        .map_err(not_drawn)?;
-    for ((filter, colour), width) in COLOURS.iter().enumerate().rev().zip([5, 3, 1]) {
-        let finite: Vec<(f64, &Fit)> = points
+    let caption = Caption {
+        name: format!("sustika2015-sweep-{}", trajectory.name()),
+        title: match trajectory {
+            Trajectory::Straight => "sustika2015, figure 2: fit errors without manoeuvres".to_owned(),
+            Trajectory::Manoeuvring => "sustika2015, figure 4: fit errors with manoeuvres".to_owned(),
+        },
+        note: format!(
+            "Means over {runs} runs; bands: ± 2 standard errors. Line: {GOOD_FIT_ERROR} %, below which it is \"good enough for \
+             implementation\"."
+        ),
+        says: summary(sweep, trajectory, runs).replace('\n', " "),
+        has_cells: false,
+    };
+    let lines = FILTERS.into_iter().zip(looks(FILTERS.len()));
+    let mut legend: Vec<(String, Key)> = lines.map(|(name, look)| (name.to_owned(), Key::Line(look))).collect();
+    legend.push((format!("{GOOD_FIT_ERROR} %"), Key::Thin(INK, 0)));
+    figure(&caption, &legend, 2 * PANEL_HEIGHT, |area| {
+        let areas = area.split_evenly((2, 1));
+        areas
             .iter()
-            .map(|(value, point)| (*value, &point.fits[filter]))
+            .zip(Parameter::ALL)
+            .try_for_each(|(area, parameter)| draw_panel(area, &points_of(sweep, trajectory, parameter), parameter))
+    })
+}
+
+/// A power of ten as a label.
+fn power(exponent: f64) -> String {
+    plain(Real::exp(&(exponent * Real::ln(&10.0))).round())
+}
+
+fn draw_panel(area: &Area, points: &[(f64, Point)], parameter: Parameter) -> Drawn {
+    let edges = points.iter().flat_map(|(_, point)| point.fits.iter().flat_map(band));
+    let highest = edges.filter(|edge| edge.is_finite()).fold(GOOD_FIT_ERROR, f64::max);
+    let last = points.last().map_or(1.0, |(value, _)| *value);
+    let is_logarithmic = highest > DIVERGENT_FIT_ERROR;
+    let scaled = |value: f64| {
+        if is_logarithmic {
+            Real::ln(&value.max(LEAST)) / Real::ln(&10.0)
+        } else {
+            value
+        }
+    };
+    let name = match parameter {
+        Parameter::NoiseDensity => "q of the filters (m²/s³, m²/s⁵); truth: 0.1",
+        Parameter::BearingDegrees => "σ_θ of the filters (°); truth: 1",
+    };
+    let x = Axis::new(0.0..last, name, false);
+    let mut y = Axis::new(0.0..scaled(1.2 * highest), "fit error (%)", true);
+    if is_logarithmic {
+        (y.format, y.labels) = (power, 3);
+    }
+    let mut chart = panel(area, "", [&x, &y], &[])?;
+    let line = |(filter, look): (usize, Look)| {
+        let fits = points.iter().map(|(value, point)| (*value, &point.fits[filter]));
+        let finite: Vec<(f64, &Fit)> = fits
             .filter(|(_, fit)| fit.mean.value.is_finite() && fit.mean.standard_error.is_finite())
             .collect();
-        let lower = finite.iter().map(|(value, fit)| (*value, band(fit)[0]));
-        let upper = finite.iter().rev().map(|(value, fit)| (*value, band(fit)[1]));
-        let outline: Vec<(f64, f64)> = lower.chain(upper).collect();
-        let around = Polygon::new(outline, colour.mix(0.2));
-        chart.draw_series(std::iter::once(around)).map_err(not_drawn)?;
-        let means = finite.iter().map(|(value, fit)| (*value, fit.mean.value));
-        chart
-            .draw_series(LineSeries::new(means, colour.stroke_width(width)))
-            .map_err(not_drawn)?;
-    }
-    let last = points.last().map_or(1.0, |(value, _)| *value);
-    let limit = [(0.0, GOOD_FIT_ERROR), (last, GOOD_FIT_ERROR)];
-    chart
-        .draw_series(LineSeries::new(limit, BLACK.stroke_width(1)))
-        .map_err(not_drawn)?;
-    Ok(())
+        Line {
+            look,
+            points: finite
+                .iter()
+                .map(|(value, fit)| (*value, scaled(fit.mean.value)))
+                .collect(),
+            band: finite.iter().map(|(_, fit)| band(fit).map(scaled)).collect(),
+        }
+    };
+    let lines: Vec<Line> = looks(FILTERS.len()).into_iter().enumerate().map(line).collect();
+    let limit = vec![(0.0, scaled(GOOD_FIT_ERROR)), (last, scaled(GOOD_FIT_ERROR))];
+    draw_path(&mut chart, limit, INK, 2)?;
+    draw_lines(&mut chart, &lines)
 }
 
-fn draw_legend(legend: &Area) -> Result<(), NotDrawn> {
-    let lines = FILTERS.into_iter().zip(COLOURS);
-    let limit = format!("{GOOD_FIT_ERROR} %: good enough");
-    let mut y = 45;
-    for (name, colour) in lines.chain([(limit.as_str(), BLACK)]) {
-        let line = PathElement::new(vec![(0, y), (20, y)], colour.stroke_width(2));
-        legend.draw(&line).map_err(not_drawn)?;
-        let text = Text::new(name.to_owned(), (26, y - 6), ("sans-serif", 13));
-        legend.draw(&text).map_err(not_drawn)?;
-        y += 20;
-    }
-    Ok(())
+/// Two standard errors below and above the mean.
+fn band(fit: &Fit) -> [f64; 2] {
+    let Estimate { value, standard_error } = fit.mean;
+    [(value - 2.0 * standard_error).max(0.0), value + 2.0 * standard_error]
 }

@@ -4,6 +4,7 @@
 //! themselves; nothing is computed here.
 
 pub mod cases;
+pub mod chart;
 pub mod check;
 pub mod check_json;
 pub mod claims;
@@ -13,6 +14,9 @@ pub mod figure;
 pub mod fit_error;
 pub mod long_term;
 pub mod page;
+pub mod palette;
+pub mod path;
+pub mod published;
 pub mod reproduction;
 pub mod rule;
 pub mod stability;
@@ -85,21 +89,28 @@ fn indent_of(paper: &Citation) -> String {
 
 /// A paragraph broken at words, every line indented.
 fn wrapped(paragraph: &str, indent: &str) -> String {
-    let width = usize::from(WIDTH);
     let mut text = String::new();
-    let mut line = indent.to_owned();
-    for word in paragraph.split_whitespace() {
-        if line.chars().count() + 1 + word.chars().count() > width && line != indent {
-            text.push_str(&line);
-            text.push('\n');
-            indent.clone_into(&mut line);
-        }
-        if line != indent {
-            line.push(' ');
-        }
-        line.push_str(word);
+    for line in broken(paragraph, usize::from(WIDTH) - indent.len()) {
+        text.push_str(indent);
+        text.push_str(&line);
+        text.push('\n');
     }
-    text.push_str(&line);
-    text.push('\n');
     text
+}
+
+/// A paragraph broken at words, into lines of so many characters at most; one line at least.
+fn broken(paragraph: &str, width: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in paragraph.split_whitespace() {
+        let length = lines.last().map_or(0, |line| line.chars().count());
+        if length > 0 && length + 1 + word.chars().count() > width {
+            lines.push(word.to_owned());
+        } else if let Some(line) = lines.last_mut() {
+            if length > 0 {
+                line.push(' ');
+            }
+            line.push_str(word);
+        }
+    }
+    lines
 }

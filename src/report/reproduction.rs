@@ -403,29 +403,36 @@ pub fn choices(specification: &Specification) -> String {
     text
 }
 
-/// RMSE over time as CSV: `time,filter,quantity,rmse`.
+/// RMSE over time as CSV: `time,filter,quantity,rmse,standard_error`.
 pub fn errors_csv(reproduction: &Reproduction) -> String {
-    let mut text = String::from("time,filter,quantity,rmse\n");
+    let mut text = String::from("time,filter,quantity,rmse,standard_error\n");
     for filter in &reproduction.filters {
         for history in &filter.rmse {
-            for (time, value) in reproduction.times.iter().zip(&history.values) {
+            let values = history.values.iter().zip(&history.standard_errors);
+            for (time, (value, standard_error)) in reproduction.times.iter().zip(values) {
                 let quantity = history.quantity.label();
-                let _ = writeln!(text, "{time},{},{quantity},{value}", filter.name);
+                let _ = writeln!(text, "{time},{},{quantity},{value},{standard_error}", filter.name);
             }
         }
     }
     text
 }
 
-/// Mean mode probabilities over time as CSV: `time,filter,mode,probability,truth`, the last 1 for the mode of the true motion.
+/// Mean mode probabilities over time as CSV: `time,filter,mode,probability,truth,standard_error`, truth being 1 for the mode of the true
+/// motion.
 pub fn mode_probabilities_csv(reproduction: &Reproduction) -> String {
-    let mut text = String::from("time,filter,mode,probability,truth\n");
+    let mut text = String::from("time,filter,mode,probability,truth,standard_error\n");
     for filter in &reproduction.filters {
         for (k, probabilities) in filter.mode_probabilities.iter().enumerate() {
-            for (mode, probability) in filter.modes.iter().zip(probabilities) {
+            let estimates = probabilities.iter().zip(&filter.mode_probability_standard_errors[k]);
+            for (mode, (probability, standard_error)) in filter.modes.iter().zip(estimates) {
                 let truth = u8::from(reproduction.is_true(mode, k));
                 let time = reproduction.times[k];
-                let _ = writeln!(text, "{time},{},{mode},{probability},{truth}", filter.name);
+                let _ = writeln!(
+                    text,
+                    "{time},{},{mode},{probability},{truth},{standard_error}",
+                    filter.name
+                );
             }
         }
     }

@@ -115,7 +115,7 @@ pub fn manoeuvres(open: &Manoeuvres, phases: [usize; 4], interval: f64) -> Path 
 }
 
 /// The unit vector of a heading.
-fn direction(heading: f64) -> Vector2<f64> {
+pub(super) fn direction(heading: f64) -> Vector2<f64> {
     Vector2::new(libm::cos(heading), libm::sin(heading))
 }
 

@@ -169,6 +169,7 @@ impl Simulation for Scenario {
         Some(simulation::Path {
             truth: self.path.places.iter().map(position_of).collect(),
             measured: self.seen(0, seed).iter().map(|seen| seen.position).collect(),
+            sensor: Some([0.0, 0.0]),
         })
     }
 }

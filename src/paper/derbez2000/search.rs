@@ -186,10 +186,10 @@ impl Configuration {
         let decades = |exponent: f64| Real::exp(&(exponent * Real::ln(&10.0)));
         let [least, greatest] = noise_bounds.map(|bound| Real::ln(&bound));
         let distance = decades(between(0.5, 3.0));
-        let direction = 90.0 * DEGREE * between(0.0, 1.0);
+        let start = path::direction(90.0 * DEGREE * between(0.0, 1.0));
         Self {
             target: Manoeuvres {
-                start: [distance * libm::cos(direction), distance * libm::sin(direction)],
+                start: (start * distance).into(),
                 heading: 360.0 * DEGREE * between(0.0, 1.0),
                 speed: [0.0, decades(between(-1.0, 2.0))][starts],
                 acceleration: decades(between(-2.0, 1.3)),
@@ -219,7 +219,7 @@ impl Configuration {
         let (nearer, speed, acceleration) = (factor(), speed * factor(), acceleration * factor());
         let (turn_rate, noise_variance) = (turn_rate * factor(), self.setup.noise_variance * factor());
         let (turned, heading) = (change() / 2.0, heading + change());
-        let (cosine, sine) = (libm::cos(turned), libm::sin(turned));
+        let [cosine, sine]: [f64; 2] = path::direction(turned).into();
         let start = [start[0] * cosine - start[1] * sine, start[0] * sine + start[1] * cosine];
         Self {
             target: Manoeuvres {

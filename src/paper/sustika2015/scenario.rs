@@ -178,6 +178,7 @@ impl Simulation for Scenario {
                 .map(|state| Vector2::new(state[0], state[1]))
                 .collect(),
             measured: draw.measurements[first..].iter().map(position).collect(),
+            sensor: Some(RADAR),
         })
     }
 }

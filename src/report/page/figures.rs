@@ -3,24 +3,46 @@
 //! After this file the reader knows how a drawing comes onto the page: as it is drawn for a file, with a caption; the page's style gives
 //! its colours on a dark screen.
 
-use super::content::{Content, Runs};
+use super::content::{Content, OfPaper, Runs};
 use super::table::table;
 use crate::paper::Paper;
 use crate::paper::result::Reproduction;
 use crate::paper::sustika2015::divergence::Row;
 use crate::paper::sustika2015::sweep::Trajectory;
-use crate::report::figure::{self, NotDrawn};
-use crate::report::{conversion, divergence, fit_error, long_term, stability_map};
+use crate::report::chart::NotDrawn;
+use crate::report::{
+    conversion, divergence, figure, fit_error, long_term, path, published, reproduction, stability_map,
+};
 use maud::{Markup, PreEscaped, html};
 
 /// A drawing with its caption.
-fn figure(svg: &str, caption: &str) -> Markup {
+fn framed(svg: &str, caption: &str) -> Markup {
     html! {
         figure {
             div.drawing { (PreEscaped(svg)) }
             figcaption { (caption) }
         }
     }
+}
+
+/// Every published figure beside the computed one, where runs reproduce any.
+///
+/// # Errors
+///
+/// [`NotDrawn`] when it cannot be drawn.
+pub fn published_and_computed(of_paper: &OfPaper) -> Result<Option<Markup>, NotDrawn> {
+    let mains = of_paper
+        .simulations
+        .iter()
+        .filter_map(|reproductions| reproductions.first());
+    let comparisons: Vec<_> = mains
+        .flat_map(|main| reproduction::published_and_computed(of_paper.paper, main))
+        .collect();
+    let Some(drawn) = published::published_and_computed(of_paper.paper, &comparisons) else {
+        return Ok(None);
+    };
+    let caption = "What the paper publishes, and what its own equations give under its own parameters.";
+    Ok(Some(framed(&drawn?, caption)))
 }
 
 /// The figures of a simulation.
@@ -31,17 +53,16 @@ fn figure(svg: &str, caption: &str) -> Markup {
 pub fn of_simulation(reproduction: &Reproduction) -> Result<Vec<Markup>, NotDrawn> {
     let mut figures = Vec::new();
     if let Some(first_run) = &reproduction.first_run {
-        figures.push(figure(
-            &figure::path(reproduction, first_run)?,
+        figures.push(framed(
+            &path::path(reproduction, first_run)?,
             "The first run: where the target was, where it was measured, and where the filters thought it was.",
         ));
     }
-    figures.push(figure(
+    figures.push(framed(
         &figure::errors(reproduction)?,
-        "Root mean square errors over time, with two standard errors to either side. Lines that coincide are drawn one over the other, \
-         each thinner than the one below it.",
+        "Root mean square errors over time. Lines that coincide are drawn one over the other, each thinner than the one below it.",
     ));
-    figures.push(figure(
+    figures.push(framed(
         &figure::mode_probabilities(reproduction)?,
         "Mean mode probabilities over time. A good filter follows the shade.",
     ));
@@ -65,12 +86,12 @@ fn of_derbez2000(content: &Content) -> Result<Vec<Markup>, NotDrawn> {
     let [stable, unstable, undecided] = content.map.counts();
     Ok(vec![
         html! { h4 #derbez2000-figures-long-term { "The predicted error beside the simulated one" } },
-        figure(
+        framed(
             &long_term::figures_1_and_2(content.extent.effort.seed)?,
             "Figures 1 and 2 of the paper: by how many per cent the predicted long-term error is off. White is right.",
         ),
         html! { h4 #derbez2000-figures-stability { "Which fixed-gain filters are stable together" } },
-        figure(
+        framed(
             &stability_map::draw(&content.map)?,
             &format!(
                 "{stable} pairs of noises certified stable, {unstable} certified unstable, {undecided} undecided; each verdict is a \
@@ -85,7 +106,7 @@ fn of_sustika2015(content: &Content) -> Result<Vec<Markup>, NotDrawn> {
         html! { h4 #sustika2015-figures-sweep { "Scenario 3: the fit error over the noises that the filters take for granted" } },
     ];
     for (trajectory, number) in Trajectory::ALL.into_iter().zip([2, 4]) {
-        figures.push(figure(
+        figures.push(framed(
             &fit_error::draw(&content.sweep.results, trajectory, content.sweep.runs)?,
             &format!("Figure {number} of the paper: the percentage fit error over the filters’ noises."),
         ));
@@ -93,7 +114,7 @@ fn of_sustika2015(content: &Content) -> Result<Vec<Markup>, NotDrawn> {
     figures.push(html! { h4 #sustika2015-figures-divergence { "What makes the unscented filter diverge" } });
     figures.push(divergences(&content.divergence));
     figures.push(html! { h4 #sustika2015-figures-conversions { "Where converted measurements can be trusted" } });
-    figures.push(figure(
+    figures.push(framed(
         &conversion::figure()?,
         "The bias and the spread of the four conversions over the standard deviation of the bearing.",
     ));

@@ -22,7 +22,8 @@ mod ledger;
 mod paper;
 mod table;
 
-use super::figure::NotDrawn;
+use super::chart::NotDrawn;
+use super::palette::{self, hexadecimal};
 use crate::book;
 use crate::paper::Paper;
 use content::Content;
@@ -50,7 +51,7 @@ pub fn html(content: &Content) -> Result<String, NotDrawn> {
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
                 title { "Immaculate: the executable specification of the IMM filter" }
-                style { (PreEscaped(STYLE)) }
+                style { (PreEscaped(STYLE)) (PreEscaped(colours_of_drawings())) }
             }
             body {
                 a.skip href="#content" { "Skip to the content" }
@@ -65,6 +66,20 @@ pub fn html(content: &Content) -> Result<String, NotDrawn> {
         }
     };
     Ok(page.into_string())
+}
+
+/// Rules that give the drawings the page's own ink, ground, grid and shade; the colours of filters are the same on any ground.
+fn colours_of_drawings() -> String {
+    let of_page = ["ink", "paper", "grid", "shade"];
+    let drawn = palette::ALL.into_iter().filter(|(name, _)| of_page.contains(name));
+    let rules = drawn.map(|(name, colour)| {
+        let hexadecimal = hexadecimal(colour);
+        format!(
+            ".drawing [fill=\"{hexadecimal}\"] {{ fill: var(--{name}); }}\n\
+             .drawing [stroke=\"{hexadecimal}\"] {{ stroke: var(--{name}); }}\n"
+        )
+    });
+    rules.collect()
 }
 
 /// The book of equations: the way from a number to everything about it, then the papers' equations in their order.

@@ -8,7 +8,7 @@ use super::{errata, figures, ledger};
 use crate::paper::Paper;
 use crate::paper::result::{Quantity, Reproduction};
 use crate::paper::specification::{Authors, Citation, Table};
-use crate::report::figure::NotDrawn;
+use crate::report::chart::NotDrawn;
 use crate::report::reproduction::{self, Comparison, compare};
 use crate::report::standard_errors;
 use crate::statistics::estimate::figure;
@@ -32,6 +32,7 @@ pub fn section(of_paper: &OfPaper, content: &Content) -> Result<Markup, NotDrawn
             (citation(&specification.paper))
             section aria-labelledby=(format!("{key}-figures")) {
                 h3 id=(format!("{key}-figures")) { "What " (key) " simulates" }
+                @if let Some(figure) = figures::published_and_computed(of_paper)? { (figure) }
                 @for simulation in &simulations { (simulation) }
                 @for figure in figures::of_paper(of_paper.paper, content)? { (figure) }
                 @for table in &specification.tables { (unreproduced(of_paper, table)) }
