@@ -7,6 +7,7 @@
 use super::chart::{
     Area, Axis, Caption, Drawn, Key, Line, Look, NotDrawn, draw_lines, figure, looks, panel, stretches,
 };
+use crate::paper::Paper;
 use crate::paper::result::{Performance, Quantity, Reproduction};
 use crate::statistics::estimate::figure as digits;
 use std::fmt::Write;
@@ -166,9 +167,11 @@ pub fn stem(reproduction: &Reproduction) -> String {
     }
 }
 
-/// The same in words.
+/// The paper and, where it has several, the scenario.
 pub(super) fn title(reproduction: &Reproduction) -> String {
-    match reproduction.choices.chosen("scenario") {
+    let paper = reproduction.paper.parse::<Paper>().ok();
+    let scenario = paper.and_then(|paper| paper.specification().chosen(&reproduction.choices, "scenario").ok());
+    match scenario {
         Some(scenario) => format!("{}, {}", reproduction.paper, scenario.replace('-', " ")),
         None => reproduction.paper.to_owned(),
     }

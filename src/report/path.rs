@@ -93,7 +93,8 @@ fn equal_axes(first_run: &FirstRun) -> ([Range<f64>; 2], u32) {
     let down = (DOWN[0]..DOWN[1])
         .find(|pixels| f64::from(*pixels) >= wanted)
         .unwrap_or(DOWN[1]);
-    let metres_a_pixel = (width / ACROSS).max(height / f64::from(down));
+    // Room for the word under the start.
+    let metres_a_pixel = 1.06 * (width / ACROSS).max(height / f64::from(down));
     let around = |range: &Range<f64>, pixels: f64| {
         let (centre, half) = (f64::midpoint(range.start, range.end), metres_a_pixel * pixels / 2.0);
         centre - half..centre + half
@@ -129,7 +130,7 @@ fn draw_plane(area: &Area, first_run: &FirstRun, [x, y]: [Range<f64>; 2], turnin
     if let Some(start) = first_run.truth.first() {
         let mark = EmptyElement::at((start[0], start[1]))
             + Circle::new((0, 0), 7, INK.stroke_width(2))
-            + Text::new("start", (12, -12), label(HPos::Left, VPos::Center));
+            + Text::new("start", (10, 16), label(HPos::Left, VPos::Center));
         chart.draw_series([mark]).map_err(not_drawn)?;
     }
     if let Some(sensor) = first_run.sensor {

@@ -54,23 +54,6 @@ pub fn draw(map: &Map) -> Result<String, NotDrawn> {
         .iter()
         .map(|row| row.iter().map(|point| kind(&point.verdict)).collect())
         .collect();
-    let mut says = String::from("A square map of pairs of tracking indices, stable around equal ones. Points:");
-    for (place, (name, ..)) in LEGEND.iter().enumerate() {
-        let count = kinds.iter().flatten().filter(|kind| **kind == place).count();
-        let _ = write!(says, " {name} {count};");
-    }
-    let caption = Caption {
-        name: "stability-map".to_owned(),
-        title: "Joint stability of two fixed-gain filters that mix".to_owned(),
-        note: "A point a pair of tracking indices Λ = σ_w t²/σ_z; all but the undecided ones are proven.".to_owned(),
-        says,
-        has_cells: true,
-    };
-    let mut legend: Vec<(String, Key)> = LEGEND
-        .iter()
-        .map(|(name, colour, opacity)| ((*name).to_owned(), Key::Area(*colour, *opacity)))
-        .collect();
-    legend.push(("equal indices (line)".to_owned(), Key::Thin(INK, 0)));
     // Rows are of constant velocity, columns of constant acceleration.
     let along = |axis: usize| -> Vec<f64> {
         match axis {
@@ -94,7 +77,7 @@ pub fn draw(map: &Map) -> Result<String, NotDrawn> {
     let (&[left, .., right], &[low, .., high]) = (&x_edges[..], &y_edges[..]) else {
         return Ok(String::new());
     };
-    figure(&caption, &legend, HEIGHT, |area| {
+    figure(&caption(&kinds), &legend(), HEIGHT, |area| {
         let mut x = Axis::new(left..right, "tracking index of constant acceleration, Λ_a", false);
         let mut y = Axis::new(low..high, "tracking index of constant velocity, Λ_v", false);
         for axis in [&mut x, &mut y] {
@@ -109,4 +92,25 @@ pub fn draw(map: &Map) -> Result<String, NotDrawn> {
         draw_path(&mut chart, ends.to_vec(), PAPER, 4)?;
         draw_path(&mut chart, ends.to_vec(), INK, 2)
     })
+}
+
+fn caption(kinds: &[Vec<usize>]) -> Caption {
+    let mut says = String::from("A square map of pairs of tracking indices, stable around equal ones. Points:");
+    for (place, (name, ..)) in LEGEND.iter().enumerate() {
+        let count = kinds.iter().flatten().filter(|kind| **kind == place).count();
+        let _ = write!(says, " {name} {count};");
+    }
+    Caption {
+        name: "stability-map".to_owned(),
+        title: "Joint stability of two fixed-gain filters that mix".to_owned(),
+        note: "A square a pair of tracking indices Λ = σ_w t²/σ_z; all but the undecided ones are proven.".to_owned(),
+        says,
+        has_cells: true,
+    }
+}
+
+fn legend() -> Vec<(String, Key)> {
+    let areas = LEGEND.iter();
+    let areas = areas.map(|(name, colour, opacity)| ((*name).to_owned(), Key::Area(*colour, *opacity)));
+    areas.chain([("equal indices".to_owned(), Key::Thin(INK, 0))]).collect()
 }

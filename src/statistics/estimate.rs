@@ -47,8 +47,8 @@ pub fn mean(values: &[f64]) -> Estimate {
     }
 }
 
-/// The root of the mean of one square a run: with the mean square over a run's steps the overall error of a filter, with the squared
-/// error at one step RMSE(k).
+/// The root of the mean of one square a run: with the mean square over a run's steps the overall error of a filter, with the squared error
+/// at one step RMSE(k).
 ///
 /// ```text
 /// A = √s̄,   SE(A) = SE(s̄) / (2A)
@@ -57,7 +57,8 @@ pub fn mean(values: &[f64]) -> Estimate {
 /// Source: the delta method, dA/ds̄ = 1/(2A). Where every square is zero, A has no derivative and no spread either: SE(A) = 0.
 ///
 /// Evidence: `the_delta_method_gives_the_spread_of_repeated_experiments`,
-/// `the_band_of_an_error_over_time_is_the_spread_of_repeated_experiments` (statistical), `a_band_has_no_width_where_all_runs_agree` (exact).
+/// `the_band_of_an_error_over_time_is_the_spread_of_repeated_experiments` (statistical),
+/// `a_band_has_no_width_where_all_runs_agree` (exact).
 pub fn root_mean_square(mean_squares: &[f64]) -> Estimate {
     let mean = mean(mean_squares);
     let value = mean.value.sqrt();
