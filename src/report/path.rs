@@ -94,7 +94,7 @@ fn equal_axes(first_run: &FirstRun) -> ([Range<f64>; 2], u32) {
         .find(|pixels| f64::from(*pixels) >= wanted)
         .unwrap_or(DOWN[1]);
     // Room for the word under the start.
-    let metres_a_pixel = 1.06 * (width / ACROSS).max(height / f64::from(down));
+    let metres_a_pixel = 1.1 * (width / ACROSS).max(height / f64::from(down));
     let around = |range: &Range<f64>, pixels: f64| {
         let (centre, half) = (f64::midpoint(range.start, range.end), metres_a_pixel * pixels / 2.0);
         centre - half..centre + half
