@@ -138,6 +138,15 @@ impl ExactRule {
     }
 
     /// Sum of the weights: the moment of degree zero, 1 for every rule that is right.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use immaculate::rule::{fifth_degree, printed};
+    ///
+    /// assert_eq!(fifth_degree::fifth_degree(4).unwrap().sum_of_weights().to_string(), "1");
+    /// assert_eq!(printed::fifth_degree(4).unwrap().sum_of_weights().to_string(), "5/3");
+    /// ```
     pub fn sum_of_weights(&self) -> Rational {
         self.weights
             .iter()
@@ -146,6 +155,16 @@ impl ExactRule {
     }
 
     /// Sum of the weights' absolute values, Σ|w|: the factor by which the rule can amplify an error of g.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use immaculate::rule::unscented::{Parameters, unscented};
+    ///
+    /// // n = 4, κ = −1: weights −1/3 and eight times 1/6
+    /// let rule = unscented(4, &Parameters::for_gaussian(4)).unwrap();
+    /// assert_eq!(rule.sum_of_absolute_weights().to_string(), "5/3");
+    /// ```
     pub fn sum_of_absolute_weights(&self) -> Rational {
         self.weights
             .iter()
@@ -153,12 +172,32 @@ impl ExactRule {
     }
 
     /// The number of points whose weight is not zero.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use immaculate::rule::fifth_degree::fifth_degree;
+    ///
+    /// // n = 4: the eight points on the axes have the weight 4 − n = 0.
+    /// let rule = fifth_degree(4).unwrap();
+    /// assert_eq!((rule.points.len(), rule.effective_points()), (33, 25));
+    /// ```
     pub fn effective_points(&self) -> usize {
         let zero = Rational::new(0, 1);
         self.weights.iter().filter(|weight| **weight != zero).count()
     }
 
     /// The number of different places at which the points stand.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use immaculate::rule::simplex::simplex;
+    ///
+    /// // n = 2: a triangle's edge midpoints are opposite to its vertices, so that 13 points stand at 7 places.
+    /// let rule = simplex(2).unwrap();
+    /// assert_eq!((rule.points.len(), rule.distinct_points()), (13, 7));
+    /// ```
     pub fn distinct_points(&self) -> usize {
         (0..self.points.len())
             .filter(|&s| !self.points[..s].contains(&self.points[s]))
@@ -181,10 +220,6 @@ impl<T: Roots, const N: usize> Rule<T, N> {
     /// Turns an exact rule into the numbers of a filter, each coordinate and weight by itself: in doubles each is the one
     /// nearest to the exact value.
     ///
-    /// # Errors
-    ///
-    /// [`InvalidRule::StateDimension`] when the rule's dimension is not N.
-    ///
     /// # Examples
     ///
     /// ```
@@ -194,6 +229,10 @@ impl<T: Roots, const N: usize> Rule<T, N> {
     /// assert_eq!(rule.points[0][0], 2.0);
     /// assert_eq!(rule.weights, vec![0.125; 8]);
     /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`InvalidRule::StateDimension`] when the rule's dimension is not N.
     pub fn from_exact(exact: &ExactRule) -> Result<Self, InvalidRule> {
         if exact.dimension != N {
             return Err(InvalidRule::StateDimension {
