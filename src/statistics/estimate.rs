@@ -18,6 +18,15 @@ pub struct Estimate {
 
 impl Estimate {
     /// How many standard errors the figure is away from a value; infinite or not a number when the standard error is zero.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use immaculate::statistics::Estimate;
+    ///
+    /// let estimate = Estimate { value: 69.0, standard_error: 0.5 };
+    /// assert_eq!(estimate.distance_from(70.0), -2.0); // 1 m below, two standard errors
+    /// ```
     pub fn distance_from(&self, value: f64) -> f64 {
         (self.value - value) / self.standard_error
     }
@@ -34,7 +43,10 @@ impl Estimate {
 /// # Examples
 ///
 /// ```
-/// let mean = immaculate::statistics::estimate::mean(&[1.0, 3.0]);
+/// use immaculate::statistics::estimate::mean;
+///
+/// // √((1 + 1)/(2 · 1))
+/// let mean = mean(&[1.0, 3.0]);
 /// assert_eq!((mean.value, mean.standard_error), (2.0, 1.0));
 /// ```
 pub fn mean(values: &[f64]) -> Estimate {
@@ -54,6 +66,16 @@ pub fn mean(values: &[f64]) -> Estimate {
 /// ```
 ///
 /// Source: the delta method, dA/ds̄ = 1/(2A).
+///
+/// # Examples
+///
+/// ```
+/// use immaculate::statistics::estimate::root_mean_square;
+///
+/// // The mean of 1 and 7 is 4 ± 3, so its root is 2 ± 3/(2 · 2).
+/// let error = root_mean_square(&[1.0, 7.0]);
+/// assert_eq!((error.value, error.standard_error), (2.0, 0.75));
+/// ```
 pub fn root_mean_square(mean_squares: &[f64]) -> Estimate {
     let mean = mean(mean_squares);
     let value = mean.value.sqrt();
