@@ -260,6 +260,15 @@ impl Choices {
 
     /// Choices from texts of the form `parameter=alternative`.
     ///
+    /// # Examples
+    ///
+    /// ```
+    /// use immaculate::paper::specification::Choices;
+    ///
+    /// let choices = Choices::parse(&["measurement=range-bearing".into()]).unwrap();
+    /// assert_eq!(choices.chosen("measurement"), Some("range-bearing"));
+    /// ```
+    ///
     /// # Errors
     ///
     /// [`InvalidChoice::Form`] for a text without `=`.
