@@ -245,7 +245,13 @@ fn every_public_equation_names_its_number_or_its_source() {
 }
 
 /// The rooms in which every equation and every function with a source has an example that is run.
-const ROOMS_WITH_EXAMPLES: [&str; 5] = ["src/rule/", "src/steady/", "src/statistics/", "src/paper/", "src/oracle/"];
+const ROOMS_WITH_EXAMPLES: [&str; 5] = [
+    "src/rule/",
+    "src/steady/",
+    "src/statistics/",
+    "src/paper/",
+    "src/oracle/",
+];
 
 #[test]
 fn every_public_equation_has_an_example_that_is_run() {
@@ -260,10 +266,19 @@ fn every_public_equation_has_an_example_that_is_run() {
         }
     }
     assert!(wrong.is_empty(), "no example, or not in its place: {wrong:#?}");
-    assert!(has_example_in_its_place("Why.\n```\nassert!(true);\n```\nEvidence: `law`."));
-    assert!(!has_example_in_its_place("Why.\n```text\nassert!(true);\n```\nEvidence: `law`."));
-    assert!(!has_example_in_its_place("Why.\n```\nlet a = 1;\n```"), "it states nothing");
-    assert!(!has_example_in_its_place("Evidence: `law`.\n```\nassert!(true);\n```"));
+    assert!(has_example_in_its_place(
+        "Example: one.\n```\nassert!(true);\n```\nEvidence: `law`."
+    ));
+    assert!(!has_example_in_its_place(
+        "Example: one.\n```text\nassert!(true);\n```\nEvidence: `law`."
+    ));
+    assert!(
+        !has_example_in_its_place("Example: one.\n```\nlet a = 1;\n```"),
+        "it states nothing"
+    );
+    assert!(!has_example_in_its_place(
+        "Evidence: `law`.\nExample: one.\n```\nassert!(true);\n```"
+    ));
 }
 
 /// Whether a doc comment has a block of code that is run and asserts something, before its errors, errata and evidence.
@@ -273,7 +288,11 @@ fn has_example_in_its_place(doc: &str) -> bool {
     while let (Some(block), after) = (blocks.next(), blocks.next()) {
         if block.starts_with('\n') {
             let early = ["# Errors", "# Panics", "Errata:", "Evidence:"];
-            return block.contains("assert") && !before.lines().any(|line| early.iter().any(|word| line.starts_with(word)));
+            let has_label = before.lines().any(|line| line.starts_with("Example: "));
+            let is_late = before
+                .lines()
+                .any(|line| early.iter().any(|word| line.starts_with(word)));
+            return block.contains("assert") && has_label && !is_late;
         }
         before.push_str(after.unwrap_or_default());
     }

@@ -19,13 +19,12 @@ pub enum Message {
 
 /// The answer of a subject to a line.
 ///
-/// # Examples
+/// Example: one line in, one line out; here this crate's own filter answers.
 ///
 /// ```
 /// use immaculate::oracle::answer::{Message, respond};
 /// use immaculate::oracle::subject::{Level, Planted};
 ///
-/// // One line in, one line out; here this crate's own filter answers.
 /// let mut filter = Planted { variants: vec![], level: Level::Everything };
 /// let Message::Reply(line) = respond(&mut filter, r#"{ "type": "start" }"#) else { panic!("it introduces itself") };
 /// assert!(line.contains(r#""type":"ready""#) && line.contains(r#""precision":"double""#));

@@ -57,12 +57,11 @@ pub fn trace_name(id: &str) -> String {
 
 /// The SHA-256 digest of a text, in hexadecimal digits.
 ///
-/// # Examples
+/// Example: the digest of nothing, as FIPS 180 has it.
 ///
 /// ```
 /// use immaculate::oracle::case::digest;
 ///
-/// // The digest of nothing, as FIPS 180 has it.
 /// assert!(digest("").starts_with("e3b0c442"));
 /// ```
 pub fn digest(text: &str) -> String {
@@ -150,7 +149,7 @@ pub enum BadCase {
 
 /// All published cases that were not withdrawn, in the order of the lock.
 ///
-/// # Examples
+/// Example: one is found by its id.
 ///
 /// ```
 /// use immaculate::oracle::case;
@@ -304,12 +303,11 @@ pub fn trace_text(id: &str, certified: &Certified) -> String {
 impl Case {
     /// Proves the case again from nothing but its problem; the bits that it took.
     ///
-    /// # Examples
+    /// Example: certified again, on enclosures: the same doubles, or an error.
     ///
     /// ```
     /// use immaculate::oracle::case;
     ///
-    /// // Certified again, on enclosures: the same doubles, or an error.
     /// let case = case::all().unwrap().iter().find(|case| case.problem.id == "step.n4-m2.two-modes").unwrap();
     /// let certified = case.verify().unwrap().unwrap();
     /// assert!(certified.digits > 16); // more digits than a double has

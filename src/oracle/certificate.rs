@@ -114,7 +114,7 @@ pub enum InvalidCertificate {
 
 /// A fraction p/q or a decimal.
 ///
-/// # Examples
+/// Example: the same number twice, and a fraction in other terms.
 ///
 /// ```
 /// use immaculate::number::Rational;

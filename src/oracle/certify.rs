@@ -59,13 +59,12 @@ pub struct Certified {
 
 /// Certifies a problem's trace, with more and more bits.
 ///
-/// # Examples
+/// Example: A published problem; c₀ = Σᵢ pᵢ₀ μᵢ of step 1 by hand, from the numbers of the file.
 ///
 /// ```
 /// use immaculate::imm::Quantity;
 /// use immaculate::oracle::{case, certify::certify};
 ///
-/// // A published problem; c₀ = Σᵢ pᵢ₀ μᵢ of step 1 by hand, from the numbers of the file.
 /// let case = case::all().unwrap().iter().find(|case| case.problem.id == "step.n4-m2.two-modes").unwrap();
 /// let certified = certify(&case.problem).unwrap();
 /// let c = certified.trace.get(1, Quantity::PredictedModeProbabilities, 0).unwrap();

@@ -238,7 +238,7 @@ fn declared(ready: &Ready) -> Result<Vec<&'static str>, NotMade> {
 
 /// Checks a program on the selected cases; `progress` is told of each case that is done.
 ///
-/// # Examples
+/// Example: this crate's own filter, with a mistake in it that is to be found: the spread of the means is left out.
 ///
 /// ```
 /// use immaculate::imm::Quantity;
@@ -246,7 +246,6 @@ fn declared(ready: &Ready) -> Result<Vec<&'static str>, NotMade> {
 /// use immaculate::oracle::diagnose::Diagnosis;
 /// use immaculate::oracle::subject::{Level, Planted};
 ///
-/// // This crate's own filter, with a mistake in it that is to be found: the spread of the means is left out.
 /// let mut program = Planted { variants: vec!["mixed-spread-omitted".into()], level: Level::Everything };
 /// let case = Selection { ids: vec!["step.n4-m2.two-modes".into()], ..Selection::default() };
 /// let report = check(&mut program, &case, &|_| {}).unwrap();

@@ -278,7 +278,7 @@ pub struct MeasurementAt {
 impl ProblemFile {
     /// Reads a problem from JSON and checks it.
     ///
-    /// # Examples
+    /// Example: a published problem, and the same with a key misspelt.
     ///
     /// ```
     /// use immaculate::oracle::{case, problem::ProblemFile};

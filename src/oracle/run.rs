@@ -148,13 +148,12 @@ fn resume<T: Real, const N: usize, const M: usize>(
 
 /// Runs a problem in doubles; the trace, and why it stopped before the end if it did.
 ///
-/// # Examples
+/// Example: the plain filter, beside the certified trace: every step is computed, and the digits of a double are nearly all right.
 ///
 /// ```
 /// use immaculate::oracle::case::{self, Expected};
 /// use immaculate::oracle::run::run_in_doubles;
 ///
-/// // The plain filter, beside the certified trace: every step is computed, and the digits of a double are nearly all right.
 /// let case = case::all().unwrap().iter().find(|case| case.problem.id == "step.n4-m2.two-modes").unwrap();
 /// let (trace, stopped) = run_in_doubles(&case.problem).unwrap();
 /// assert_eq!(stopped, None);

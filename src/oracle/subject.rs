@@ -250,7 +250,7 @@ pub enum Broken {
 
 /// A filter under test.
 ///
-/// # Examples
+/// Example: the smallest program under test, which shows one quantity and is judged by it.
 ///
 /// ```
 /// use immaculate::imm::Quantity;

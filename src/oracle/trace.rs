@@ -187,14 +187,13 @@ impl Trace {
 
     /// Reads the list of steps of a trace or an answer, with patience. What is not finite becomes NaN.
     ///
-    /// # Examples
+    /// Example: one mode, one state, one measurement: a 1 × 1 matrix may come as a number, a list of one mode as an object.
     ///
     /// ```
     /// use immaculate::imm::Quantity;
     /// use immaculate::oracle::trace::{Dimensions, Trace};
     /// use serde_json::json;
     ///
-    /// // One mode, one state, one measurement: a 1 × 1 matrix may come as a number, a list of one mode as an object.
     /// let dimensions = Dimensions { n: 1, m: 1, r: 1, steps: 1 };
     /// let steps = json!([{ "step": 1, "modes": { "gain": 0.75 } }]);
     /// let trace = Trace::from_json(&steps, dimensions).unwrap();

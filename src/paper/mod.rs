@@ -142,14 +142,13 @@ impl Paper {
 
     /// Runs the paper's simulation.
     ///
-    /// # Examples
+    /// Example: zhu2016 is linear, so two of its filters are one: the same errors but for rounding, in two runs as in a hundred.
     ///
     /// ```
     /// use immaculate::paper::result::Quantity;
     /// use immaculate::paper::specification::Choices;
     /// use immaculate::paper::{Effort, Paper};
     ///
-    /// // zhu2016 is linear, so two of its filters are one: the same errors but for rounding, in two runs as in a hundred.
     /// let effort = Effort { runs: Some(2), seed: 1 };
     /// let result = Paper::Zhu2016.reproduce(&Choices::default(), effort, &|| {}).unwrap();
     /// let error = |filter| result.error(filter, Quantity::X).unwrap().value;

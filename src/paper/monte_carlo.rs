@@ -37,13 +37,12 @@ impl Generator {
     ///
     /// Source: Box and Muller 1958.
     ///
-    /// # Examples
+    /// Example: the same stream of the same seed gives the same numbers on every platform: two uniform ones make a Gaussian one.
     ///
     /// ```
     /// use immaculate::number::Real;
     /// use immaculate::paper::monte_carlo::Generator;
     ///
-    /// // The same stream of the same seed gives the same numbers on every platform: two uniform ones make a Gaussian one.
     /// let mut uniform = Generator::new(1, 0);
     /// let (u, v) = (uniform.uniform(), uniform.uniform());
     /// let made = Real::sqrt(&(-2.0 * Real::ln(&u))) * Real::cos(&(2.0 * std::f64::consts::PI * v));

@@ -260,7 +260,7 @@ impl Choices {
 
     /// Choices from texts of the form `parameter=alternative`.
     ///
-    /// # Examples
+    /// Example: as `--set` has it on the command line.
     ///
     /// ```
     /// use immaculate::paper::specification::Choices;

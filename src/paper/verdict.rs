@@ -60,7 +60,7 @@ pub const DECISIVE: f64 = 4.0;
 
 /// Whether a difference is below zero, above it, or neither with certainty.
 ///
-/// # Examples
+/// Example: ten standard errors below zero, and half of one above.
 ///
 /// ```
 /// use immaculate::paper::verdict::sign_of;

@@ -25,13 +25,12 @@ use num_traits::Zero;
 /// Why: the axes and the diagonals together integrate every polynomial of degree five over the sphere (Stroud's Uₙ 5-1), and
 /// the centre with the radius √(n+2) gets the radial moments E r² = n and E r⁴ = n(n + 2) right.
 ///
-/// # Examples
+/// Example: for n = 2: the centre, 4 points on the axes, 4 on the diagonals, at the distance √4.
 ///
 /// ```
 /// use immaculate::number::{Rational, Surd};
 /// use immaculate::rule::fifth_degree::fifth_degree;
 ///
-/// // n = 2: the centre, 4 points on the axes, 4 on the diagonals, at the distance √4.
 /// let rule = fifth_degree(2).unwrap();
 /// let root = Surd::root(&Rational::new(2, 1));
 /// assert_eq!(rule.points[1], [Surd::root(&Rational::new(4, 1)), Surd::root(&Rational::new(0, 1))]); // (2, 0)
@@ -99,13 +98,12 @@ pub(super) fn with_weights(
 ///
 /// The pairs (j, l) come in lexicographic order; sums over the points do not depend on it.
 ///
-/// # Examples
+/// Example: n = 2 has one pair (1, 2), n = 3 has three: (1, 2), (1, 3), (2, 3).
 ///
 /// ```
 /// use immaculate::number::{Rational, Surd};
 /// use immaculate::rule::fifth_degree::diagonals_plus;
 ///
-/// // n = 2 has one pair (1, 2), n = 3 has three: (1, 2), (1, 3), (2, 3).
 /// let half = Surd::root(&Rational::new(1, 2));
 /// assert_eq!(diagonals_plus(2), [[half.clone(), half]]);
 /// assert_eq!(diagonals_plus(3).len(), 3);
@@ -122,7 +120,7 @@ pub fn diagonals_plus(n: usize) -> Vec<Vec<Surd>> {
 /// s⁻ = √½ (eⱼ − eₗ),   j < l
 /// ```
 ///
-/// # Examples
+/// Example: for n = 2, √½ (1, −1).
 ///
 /// ```
 /// use immaculate::number::{Rational, Surd};
@@ -167,13 +165,12 @@ fn scaled(points: &[Vec<Surd>], radius: &Surd) -> Vec<Vec<Surd>> {
 ///
 /// Why: the radial rule. With weight W on the sphere of radius √(n+2), E r² = n asks for W = n/(n + 2); the centre has the rest.
 ///
-/// # Examples
+/// Example: 2/(2 + 2) and 2/(4 + 2).
 ///
 /// ```
 /// use immaculate::number::Rational;
 /// use immaculate::rule::fifth_degree::centre_weight;
 ///
-/// // 2/(2 + 2) and 2/(4 + 2)
 /// assert_eq!(centre_weight(&Rational::new(2, 1)), Rational::new(1, 2));
 /// assert_eq!(centre_weight(&Rational::new(4, 1)), Rational::new(1, 3));
 /// ```
@@ -188,13 +185,12 @@ pub fn centre_weight<T: Field>(n: &T) -> T {
 /// Why: Stroud's weight (4 − n)/(2n(n + 2)) on the unit sphere, times n/(n + 2) of the radial rule. Positive for n < 4, zero at
 /// n = 4 (8 of the 33 points then count for nothing), negative for n > 4.
 ///
-/// # Examples
+/// Example: (4 − 2)/(2 · 16), (4 − 4)/(2 · 36), (4 − 5)/(2 · 49).
 ///
 /// ```
 /// use immaculate::number::Rational;
 /// use immaculate::rule::fifth_degree::axis_weight;
 ///
-/// // (4 − 2)/(2 · 16), (4 − 4)/(2 · 36), (4 − 5)/(2 · 49)
 /// assert_eq!(axis_weight(&Rational::new(2, 1)), Rational::new(1, 16));
 /// assert_eq!(axis_weight(&Rational::new(4, 1)), Rational::new(0, 1));
 /// assert_eq!(axis_weight(&Rational::new(5, 1)), Rational::new(-1, 98));
@@ -210,14 +206,13 @@ pub fn axis_weight<T: Field>(n: &T) -> T {
 ///
 /// Why: Stroud's weight 1/(n(n + 2)) on the unit sphere, times n/(n + 2) of the radial rule.
 ///
-/// # Examples
+/// Example: for n = 4: 1 centre, 8 points on the axes, 24 on the diagonals.
 ///
 /// ```
 /// use immaculate::number::{Field, Rational};
 /// use immaculate::rule::fifth_degree::{axis_weight, centre_weight, diagonal_weight};
 /// use immaculate::rule::printed;
 ///
-/// // n = 4: 1 centre, 8 points on the axes, 24 on the diagonals.
 /// let n = Rational::new(4, 1);
 /// let sum = |w2: Rational| centre_weight(&n) + Rational::integer(8) * axis_weight(&n) + Rational::integer(24) * w2;
 /// // 1/3 + 8 · 0 + 24 · 1/36

@@ -32,12 +32,11 @@ pub struct Node {
 /// Source: Abramowitz and Stegun 25.4.46, in the variable √2 x. The filter of this rule is the Gauss-Hermite Kalman filter of
 /// Ito and Xiong 2000.
 ///
-/// # Examples
+/// Example: for m = 3: 0 with 2/3, ±√3 with 1/6 each.
 ///
 /// ```
 /// use immaculate::rule::gauss_hermite::nodes;
 ///
-/// // m = 3: 0 with 2/3, ±√3 with 1/6 each.
 /// let nodes = nodes(3).unwrap();
 /// let [centre, right] = [&nodes[0], &nodes[1]];
 /// assert_eq!((centre.sign, centre.weight.to_string()), (0, "2/3".to_owned()));
@@ -99,12 +98,11 @@ pub fn nodes(m: usize) -> Result<Vec<Node>, InvalidRule> {
 ///
 /// Source: the definition of a rule.
 ///
-/// # Examples
+/// Example: for m = 3: E x⁴ = 2 · 1/6 · 9 = 3 is the Gaussian's; E x⁶ = 2 · 1/6 · 27 = 9, where the Gaussian has 15.
 ///
 /// ```
 /// use immaculate::rule::gauss_hermite::{moment, nodes};
 ///
-/// // m = 3: E x⁴ = 2 · 1/6 · 9 = 3 is the Gaussian's; E x⁶ = 2 · 1/6 · 27 = 9, where the Gaussian has 15.
 /// let nodes = nodes(3).unwrap();
 /// assert_eq!(moment(&nodes, 4).to_string(), "3");
 /// assert_eq!(moment(&nodes, 6).to_string(), "9");
@@ -134,12 +132,11 @@ pub fn moment(nodes: &[Node], power: usize) -> Surd {
 ///
 /// Source: as [`nodes`].
 ///
-/// # Examples
+/// Example: two coordinates with 0 and ±√3 each: nine points, the first of them the centre with 2/3 · 2/3.
 ///
 /// ```
 /// use immaculate::rule::gauss_hermite::gauss_hermite;
 ///
-/// // Two coordinates with 0 and ±√3 each: nine points, the first of them the centre with 2/3 · 2/3.
 /// let rule = gauss_hermite::<f64, 2>(3).unwrap();
 /// assert_eq!(rule.points.len(), 9);
 /// assert_eq!(rule.points[0].as_slice(), [0.0, 0.0]);

@@ -33,7 +33,7 @@ impl std::fmt::Display for WrongMoment {
 
 /// The name of a monomial under an expectation: `E x1^2 x3`, or `E 1`.
 ///
-/// # Examples
+/// Example: exponents of zero are left out.
 ///
 /// ```
 /// use immaculate::rule::moment::monomial_name;
@@ -69,7 +69,7 @@ pub struct Exactness {
 ///
 /// Source: E x^(2k) = 1·3·5⋯(2k − 1) for a standard Gaussian coordinate, and the coordinates are independent.
 ///
-/// # Examples
+/// Example: E x⁴ = 3 and E x² = 1; odd ones are zero.
 ///
 /// ```
 /// use immaculate::rule::moment::gaussian_moment;
@@ -94,12 +94,11 @@ pub fn gaussian_moment(exponents: &[usize]) -> Rational {
 ///
 /// Source: the definition of a rule.
 ///
-/// # Examples
+/// Example: four points (±√2, 0), (0, ±√2) with 1/4 each: E x₁² = 2 · 1/4 · 2, E x₁⁴ = 2 · 1/4 · 4, and E x₁²x₂² = 0 for 1.
 ///
 /// ```
 /// use immaculate::rule::{moment::rule_moment, third_degree::third_degree};
 ///
-/// // Four points (±√2, 0), (0, ±√2) with 1/4 each: E x₁² = 2 · 1/4 · 2, E x₁⁴ = 2 · 1/4 · 4, and E x₁²x₂² = 0 for 1.
 /// let rule = third_degree(2).unwrap();
 /// assert_eq!(rule_moment(&rule, &[2, 0]).to_string(), "1");
 /// assert_eq!(rule_moment(&rule, &[4, 0]).to_string(), "2");
@@ -123,7 +122,7 @@ pub fn rule_moment(rule: &ExactRule, exponents: &[usize]) -> Surd {
 ///
 /// Source: the definition of the degree of a rule.
 ///
-/// # Examples
+/// Example: four points at the distance √2 with 1/4 each, 2 · 1/4 · (√2)⁴ = 2.
 ///
 /// ```
 /// use immaculate::rule::{moment::exactness, third_degree::third_degree};
@@ -152,12 +151,11 @@ pub fn exactness(rule: &ExactRule, up_to: usize) -> Exactness {
 ///
 /// Source: the definition of the degree of a rule.
 ///
-/// # Examples
+/// Example: for n = 2: the axes give E x₁⁶ 2 · 1/16 · 2⁶ = 8, the diagonals 4 · 1/16 · (√2)⁶ = 2.
 ///
 /// ```
 /// use immaculate::rule::{fifth_degree::fifth_degree, moment::wrong_moment_of_degree};
 ///
-/// // n = 2: the axes give E x₁⁶ 2 · 1/16 · 2⁶ = 8, the diagonals 4 · 1/16 · (√2)⁶ = 2.
 /// let rule = fifth_degree(2).unwrap();
 /// assert_eq!(wrong_moment_of_degree(&rule, 4), None);
 /// let wrong = wrong_moment_of_degree(&rule, 6).unwrap();

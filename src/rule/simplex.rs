@@ -24,13 +24,12 @@ use std::cmp::Ordering;
 /// Why: Mysovskikh's rule of degree five on the sphere, [`sphere_vertex_weight`] and [`sphere_edge_weight`], times the radial
 /// rule, [`radial_rule`].
 ///
-/// # Examples
+/// Example: for n = 2: the centre, ± three vertices of a triangle, ± its three edge midpoints, at the distance √4.
 ///
 /// ```
 /// use immaculate::number::Rational;
 /// use immaculate::rule::simplex::simplex;
 ///
-/// // n = 2: the centre, ± three vertices of a triangle, ± its three edge midpoints, at the distance √4.
 /// let rule = simplex(2).unwrap();
 /// assert_eq!((rule.points.len(), rule.points[1][0].to_string()), (13, "2".to_owned()));
 /// // 1/2 + 6 · 5/72 + 6 · 1/72
@@ -104,13 +103,12 @@ pub(super) fn with_weights(
 ///
 /// Why: unit vectors with aᵢ·aⱼ = −1/n and Σⱼ aⱼ = 0: as far from each other as n + 1 directions can be.
 ///
-/// # Examples
+/// Example: for n = 2, an equilateral triangle: (1, 0), (−1/2, √3/2), (−1/2, −√3/2).
 ///
 /// ```
 /// use immaculate::number::Surd;
 /// use immaculate::rule::simplex::vertices;
 ///
-/// // n = 2, an equilateral triangle: (1, 0), (−1/2, √3/2), (−1/2, −√3/2)
 /// let [a, b, c]: [Vec<Surd>; 3] = vertices(2).try_into().unwrap();
 /// assert_eq!([a[0].to_string(), b[0].to_string(), c[0].to_string()], ["1", "-1/2", "-1/2"]);
 /// assert_eq!(b[1].clone() + c[1].clone(), a[1]); // √3/2 − √3/2 = 0
@@ -138,13 +136,12 @@ pub fn vertices(n: usize) -> Vec<Vec<Surd>> {
 
 /// The square of a vertex's coordinate m < j in liu2017 (7): (n + 1) / (n(n − m + 2)(n − m + 1)).
 ///
-/// # Examples
+/// Example: for n = 2, m = 1: 3/(2 · 3 · 2).
 ///
 /// ```
 /// use immaculate::number::Rational;
 /// use immaculate::rule::simplex::below_diagonal_squared;
 ///
-/// // n = 2, m = 1: 3/(2 · 3 · 2)
 /// assert_eq!(below_diagonal_squared(&Rational::new(2, 1), &Rational::new(1, 1)), Rational::new(1, 4));
 /// ```
 pub fn below_diagonal_squared<T: Field>(n: &T, m: &T) -> T {
@@ -154,13 +151,12 @@ pub fn below_diagonal_squared<T: Field>(n: &T, m: &T) -> T {
 
 /// The square of a vertex's coordinate m = j in liu2017 (7): (n + 1)(n − j + 1) / (n(n − j + 2)).
 ///
-/// # Examples
+/// Example: for n = 2: the second vertex has 1/4 below the diagonal and 3 · 1/(2 · 2) on it: a unit vector.
 ///
 /// ```
 /// use immaculate::number::Rational;
 /// use immaculate::rule::simplex::{below_diagonal_squared, on_diagonal_squared};
 ///
-/// // n = 2: the second vertex has 1/4 below the diagonal and 3 · 1/(2 · 2) on it: a unit vector.
 /// let (n, one, two) = (Rational::new(2, 1), Rational::new(1, 1), Rational::new(2, 1));
 /// assert_eq!(on_diagonal_squared(&n, &two), Rational::new(3, 4));
 /// assert_eq!(below_diagonal_squared(&n, &one) + on_diagonal_squared(&n, &two), one);
@@ -179,12 +175,11 @@ pub fn on_diagonal_squared<T: Field>(n: &T, j: &T) -> T {
 /// Why: |aᵢ + aₗ|² = 2 − 2/n, so these are unit vectors. At n = 2 they are the mirror images −aₖ of the third vertex, and the 13
 /// points stand at 7 places; at n = 3 the midpoints of opposite edges are mirror images, and the 21 points stand at 15.
 ///
-/// # Examples
+/// Example: for n = 2: √(2/(2 · 1)) = 1, and a₁ + a₂ = (1 − 1/2, √3/2) = −a₃.
 ///
 /// ```
 /// use immaculate::rule::simplex::{edge_midpoints, vertices};
 ///
-/// // n = 2: √(2/(2 · 1)) = 1, and a₁ + a₂ = (1 − 1/2, √3/2) = −a₃
 /// let (vertices, midpoints) = (vertices(2), edge_midpoints(2));
 /// let opposite: Vec<_> = vertices[2].iter().map(|x| -x.clone()).collect();
 /// assert_eq!(midpoints[0], opposite);
@@ -214,13 +209,12 @@ pub fn edge_midpoints(n: usize) -> Vec<Vec<Surd>> {
 /// w_a / Aₙ = n(7 − n) / (2(n+1)²(n+2))
 /// ```
 ///
-/// # Examples
+/// Example: for n = 2: 2 · 5/(2 · 9 · 4) for each of 6 vertices and 2/(2 · 9 · 4) for each of 6 midpoints: the whole sphere.
 ///
 /// ```
 /// use immaculate::number::{Field, Rational};
 /// use immaculate::rule::simplex::{sphere_edge_weight, sphere_vertex_weight};
 ///
-/// // n = 2: 2 · 5/(2 · 9 · 4) for each of 6 vertices and 2/(2 · 9 · 4) for each of 6 midpoints: the whole sphere.
 /// let n = Rational::new(2, 1);
 /// assert_eq!(sphere_vertex_weight(&n), Rational::new(5, 36));
 /// let six = Rational::integer(6);
@@ -243,13 +237,12 @@ pub fn sphere_vertex_weight<T: Field>(n: &T) -> T {
 /// w_b / Aₙ = 2(n − 1)² / (n(n+1)²(n+2))
 /// ```
 ///
-/// # Examples
+/// Example: for n = 2: 2/(2 · 9 · 4), printed 2/(2 · 9 · 16).
 ///
 /// ```
 /// use immaculate::number::Rational;
 /// use immaculate::rule::{printed, simplex::sphere_edge_weight};
 ///
-/// // n = 2: 2/(2 · 9 · 4), printed 2/(2 · 9 · 16)
 /// let n = Rational::new(2, 1);
 /// assert_eq!(sphere_edge_weight(&n), Rational::new(1, 36));
 /// assert_eq!(printed::sphere_edge_weight(&n), Rational::new(1, 144));
@@ -276,13 +269,12 @@ pub fn sphere_edge_weight<T: Field>(n: &T) -> T {
 ///
 /// Why: two nodes must match l = 0, 2, 4: ω₁ + ω₂ = 1, ω₂r₂² = n/2, ω₂r₂⁴ = (n/2)(n/2 + 1).
 ///
-/// # Examples
+/// Example: for n = 2: 2/4, 2/4, 2/2 + 1; the moments zero, two and four are 1, n/2 = 1 and (n/2)(n/2 + 1) = 2.
 ///
 /// ```
 /// use immaculate::number::Rational;
 /// use immaculate::rule::simplex::radial_rule;
 ///
-/// // n = 2: 2/4, 2/4, 2/2 + 1; the moments zero, two and four are 1, n/2 = 1 and (n/2)(n/2 + 1) = 2.
 /// let (centre, sphere, squared) = radial_rule(&Rational::new(2, 1));
 /// assert_eq!(squared, Rational::new(2, 1));
 /// assert_eq!(centre + sphere.clone(), Rational::new(1, 1));
@@ -305,7 +297,7 @@ pub fn radial_rule<T: Field>(n: &T) -> (T, T, T) {
 
 /// Weight of the centre — liu2017 (16): 2/(n + 2), the radial rule's ω₁.
 ///
-/// # Examples
+/// Example: for n = 2.
 ///
 /// ```
 /// use immaculate::number::Rational;
@@ -323,13 +315,12 @@ pub fn centre_weight<T: Field>(n: &T) -> T {
 ///
 /// Why: [`sphere_vertex_weight`] times n/(n + 2). Positive for n < 7, zero at n = 7, negative for n > 7.
 ///
-/// # Examples
+/// Example: for n = 2: 5 · 4/(2 · 9 · 16); n = 8: −1 · 64/(2 · 81 · 100).
 ///
 /// ```
 /// use immaculate::number::Rational;
 /// use immaculate::rule::simplex::vertex_weight;
 ///
-/// // n = 2: 5 · 4/(2 · 9 · 16); n = 8: −1 · 64/(2 · 81 · 100)
 /// assert_eq!(vertex_weight(&Rational::new(2, 1)), Rational::new(5, 72));
 /// assert_eq!(vertex_weight(&Rational::new(8, 1)), Rational::new(-8, 2025));
 /// ```
@@ -346,13 +337,12 @@ pub fn vertex_weight<T: Field>(n: &T) -> T {
 ///
 /// Why: [`sphere_edge_weight`] times n/(n + 2).
 ///
-/// # Examples
+/// Example: for n = 4: 1 centre, 10 vertices, 20 midpoints.
 ///
 /// ```
 /// use immaculate::number::{Field, Rational};
 /// use immaculate::rule::{printed, simplex};
 ///
-/// // n = 4: 1 centre, 10 vertices, 20 midpoints.
 /// let n = Rational::new(4, 1);
 /// let vertices = Rational::integer(10) * simplex::vertex_weight(&n);
 /// let sum = |edge: Rational| simplex::centre_weight(&n) + vertices.clone() + Rational::integer(20) * edge;

@@ -15,12 +15,11 @@ use crate::number::{Field, Rational, Surd};
 /// Source: Arasaratnam and Haykin, Cubature Kalman Filters, IEEE Transactions on Automatic Control 54(6), 2009; the rule of
 /// the filter that both papers compare themselves with (IMMCKF).
 ///
-/// # Examples
+/// Example: for n = 2: (±√2, 0) and (0, ±√2), each with 1/4, so that E x₁² = 2 · 1/4 · 2 = 1.
 ///
 /// ```
 /// use immaculate::rule::third_degree::third_degree;
 ///
-/// // n = 2: (±√2, 0) and (0, ±√2), each with 1/4, so that E x₁² = 2 · 1/4 · 2 = 1
 /// let rule = third_degree(2).unwrap();
 /// assert_eq!(format!("{} {}", rule.points[0][0], rule.points[2][0]), "√2 -√2");
 /// assert_eq!(rule.weights[0].to_string(), "1/4");
@@ -53,7 +52,7 @@ pub fn third_degree(n: usize) -> Result<ExactRule, InvalidRule> {
 ///
 /// Source: as [`third_degree`].
 ///
-/// # Examples
+/// Example: for n = 2.
 ///
 /// ```
 /// use immaculate::number::Rational;

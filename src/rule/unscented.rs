@@ -21,13 +21,12 @@ pub struct Parameters {
 impl Parameters {
     /// The original form with one parameter κ: α = 1, β = 0.
     ///
-    /// # Examples
+    /// Example: with α = 1, λ = n + κ − n = κ.
     ///
     /// ```
     /// use immaculate::number::Rational;
     /// use immaculate::rule::unscented::Parameters;
     ///
-    /// // With α = 1, λ = n + κ − n = κ.
     /// let parameters = Parameters::of_kappa(Rational::new(1, 2));
     /// assert_eq!(parameters.lambda(4), Rational::new(1, 2));
     /// ```
@@ -43,7 +42,7 @@ impl Parameters {
     ///
     /// Source: Julier and Uhlmann 2004.
     ///
-    /// # Examples
+    /// Example: for n = 2 and n = 4.
     ///
     /// ```
     /// use immaculate::number::Rational;
@@ -60,7 +59,7 @@ impl Parameters {
     ///
     /// Source: Wan and van der Merwe, The unscented Kalman filter, 2001.
     ///
-    /// # Examples
+    /// Example: for n = 2, α = 1/2, κ = 1.
     ///
     /// ```
     /// use immaculate::number::Rational;
@@ -79,7 +78,7 @@ impl Parameters {
 ///
 /// Source: Wan and van der Merwe, The unscented Kalman filter, 2001.
 ///
-/// # Examples
+/// Example: for n = 2, α = 1/2, κ = 1.
 ///
 /// ```
 /// use immaculate::number::Rational;
@@ -109,12 +108,11 @@ pub fn lambda<T: Field>(n: &T, alpha: &T, kappa: &T) -> T {
 /// along them fall on the centre and make up for its smaller weight. With another κ, as 0, they push the other points outwards.
 /// sustika2015 prints neither the weights nor λ, and has states of four and of six components.
 ///
-/// # Examples
+/// Example: for n = 2, κ = 3 − 2 = λ: points at the distance √3; weights 1/3 and four times 1/6.
 ///
 /// ```
 /// use immaculate::rule::unscented::{Parameters, unscented};
 ///
-/// // n = 2, κ = 3 − 2 = λ: points at the distance √3; weights 1/3 and four times 1/6.
 /// let rule = unscented(2, &Parameters::for_gaussian(2)).unwrap();
 /// assert_eq!(rule.points[1][0].to_string(), "√3");
 /// assert_eq!(format!("{} {}", rule.weights[0], rule.weights[1]), "1/3 1/6");
@@ -173,12 +171,11 @@ pub fn unscented(n: usize, parameters: &Parameters) -> Result<ExactRule, Invalid
 ///
 /// Source: as [`unscented`], of which it has the points and their order.
 ///
-/// # Examples
+/// Example: for n = 2, α = 1, β = 0, κ = 1: λ = 1, and what is rounded is √3 and the quotients.
 ///
 /// ```
 /// use immaculate::rule::unscented::unscented_in;
 ///
-/// // n = 2, α = 1, β = 0, κ = 1: λ = 1, and what is rounded is √3 and the quotients.
 /// let rule = unscented_in::<f64, 2>(&1.0, &0.0, &1.0).unwrap();
 /// assert_eq!(rule.points[1][0], 3.0_f64.sqrt());
 /// assert_eq!(rule.weights[..2], [1.0 / 3.0, 1.0 / 6.0]);
@@ -222,14 +219,13 @@ pub fn unscented_in<T: Real, const N: usize>(alpha: &T, beta: &T, kappa: &T) -> 
 ///
 /// Source: as [`lambda`].
 ///
-/// # Examples
+/// Example: for α = 1/2, β = 2: −5/3 + 1 − 1/4 + 2.
 ///
 /// ```
 /// use immaculate::number::Rational;
 /// use immaculate::rule::unscented::centre_covariance_weight;
 ///
 /// let q = Rational::new;
-/// // α = 1/2, β = 2: −5/3 + 1 − 1/4 + 2
 /// assert_eq!(centre_covariance_weight(&q(-5, 3), &q(1, 2), &q(2, 1)), q(13, 12));
 /// // α = 1, β = 0: the same as for means
 /// assert_eq!(centre_covariance_weight(&q(1, 3), &q(1, 1), &q(0, 1)), q(1, 3));
@@ -242,7 +238,7 @@ pub fn centre_covariance_weight<T: Field>(centre_weight: &T, alpha: &T, beta: &T
 ///
 /// Source: as [`unscented`].
 ///
-/// # Examples
+/// Example: for n = 2 and n = 4 with κ = 3 − n.
 ///
 /// ```
 /// use immaculate::number::Rational;
@@ -260,7 +256,7 @@ pub fn centre_weight<T: Field>(n: &T, lambda: &T) -> T {
 ///
 /// Source: as [`unscented`].
 ///
-/// # Examples
+/// Example: for n = 2, λ = 1.
 ///
 /// ```
 /// use immaculate::number::Rational;

@@ -17,13 +17,12 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 ///
 /// Source: Bar-Shalom, Li and Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001, section 5.4.
 ///
-/// # Examples
+/// Example: an error of 4 with the standard deviation 2: (4/2)².
 ///
 /// ```
 /// use immaculate::{gaussian::Gaussian, statistics::consistency::nees};
 /// use nalgebra::{matrix, vector};
 ///
-/// // An error of 4 with the standard deviation 2: (4/2)²
 /// let estimate = Gaussian { mean: vector![1.0], covariance: matrix![4.0] };
 /// assert_eq!(nees(&estimate, &vector![5.0]), 4.0);
 /// ```
@@ -40,14 +39,13 @@ pub fn nees<const N: usize>(estimate: &Gaussian<f64, N>, truth: &SVector<f64, N>
 ///
 /// Source: as [`nees`]; for several modes the moments of the mixture that predicts the measurement.
 ///
-/// # Examples
+/// Example: two equally likely modes with innovations 1 and 3 and variances 2 and 4: ν̄ = 2, S̄ = 3 + 1.
 ///
 /// ```
 /// use immaculate::imm::Step;
 /// use immaculate::statistics::consistency::nis;
 /// use nalgebra::{matrix, vector};
 ///
-/// // Two equally likely modes with innovations 1 and 3 and variances 2 and 4: ν̄ = 2, S̄ = 3 + 1.
 /// let mut step = Step::<f64, 1, 1>::zeros(2, 0);
 /// step.measurement = Some(vector![0.0]);
 /// step.predicted_mode_probabilities = vec![0.5, 0.5];
@@ -78,13 +76,12 @@ pub fn nis<const N: usize, const M: usize>(step: &Step<f64, N, M>) -> Option<f64
 ///
 /// Source: the sum of independent χ² variables is χ² with the sum of their degrees of freedom.
 ///
-/// # Examples
+/// Example: one χ² variable of one degree of freedom: a standard Gaussian squared, below 1.959964² with probability 0.95. The tabulated
+/// quantile has seven digits.
 ///
 /// ```
 /// use immaculate::statistics::consistency::bounds;
 ///
-/// // One χ² variable of one degree of freedom: a standard Gaussian squared, below 1.959964² with probability 0.95. The tabulated
-/// // quantile has seven digits.
 /// let (_, upper) = bounds(1.0, 1, 0.1);
 /// assert!((upper - 1.959964_f64 * 1.959964).abs() < 1e-5);
 /// ```

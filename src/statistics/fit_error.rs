@@ -18,12 +18,11 @@
 /// Why: the ratio of two root mean squares over the same steps, and so without a unit. It is zero for perfect tracking and 100 for the
 /// estimate 0. It is no property of errors alone: a radar that stands elsewhere divides the same errors by other numbers.
 ///
-/// # Examples
+/// Example: ‖(3, −4)‖ = 5 beside ‖(30, 40)‖ = 50.
 ///
 /// ```
 /// use immaculate::statistics::fit_error::percentage_fit_error;
 ///
-/// // ‖(3, −4)‖ = 5 beside ‖(30, 40)‖ = 50
 /// assert_eq!(percentage_fit_error(&[3.0, -4.0], &[30.0, 40.0]), 10.0);
 /// ```
 ///
@@ -75,12 +74,11 @@ impl FitForm {
 /// Why: one number for both coordinates, of which a filter has to be good in both. The joint norm alone is a ratio of an error to a
 /// distance; it lies between the two coordinates' own.
 ///
-/// # Examples
+/// Example: one step: x is off by 3 of 10, y by 4 of 10, so 30 % and 40 %.
 ///
 /// ```
 /// use immaculate::statistics::fit_error::{FitForm, position_fit_error};
 ///
-/// // One step: x is off by 3 of 10, y by 4 of 10, so 30 % and 40 %.
 /// let of = |form| position_fit_error(form, [&[3.0], &[4.0]], [&[10.0], &[10.0]]);
 /// assert_eq!(of(FitForm::RootSumSquare), 50.0);
 /// assert_eq!(of(FitForm::Mean), 35.0);

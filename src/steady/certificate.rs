@@ -38,14 +38,13 @@ pub struct Edge {
 ///
 /// Source: Ahmadi, Jungers, Parrilo and Roozbehani 2014, path-complete graph Lyapunov functions.
 ///
-/// # Examples
+/// Example: one node, P = 1, and the matrices 1/2 and −3/4: 1 − 1/4 > 0 and 1 − 9/16 > 0.
 ///
 /// ```
 /// use immaculate::number::Rational;
 /// use immaculate::steady::certificate::Quadratics;
 /// use nalgebra::matrix;
 ///
-/// // One node, P = 1, and the matrices 1/2 and −3/4: 1 − 1/4 > 0 and 1 − 9/16 > 0.
 /// let q = Rational::new;
 /// let certificate = Quadratics::<1> { edges: Quadratics::<1>::memory(2, 0), forms: vec![matrix![q(1, 1)]] };
 /// assert!(certificate.check(&[matrix![q(1, 2)], matrix![q(-3, 4)]]).is_ok());
@@ -68,14 +67,13 @@ pub struct Quadratics<const N: usize> {
 ///
 /// Source: Rota and Strang 1960.
 ///
-/// # Examples
+/// Example: each of the two forgets all in two steps; one after the other they are [0 0; 0 4].
 ///
 /// ```
 /// use immaculate::number::{Field, Rational};
 /// use immaculate::steady::certificate::Product;
 /// use nalgebra::matrix;
 ///
-/// // Each of the two forgets all in two steps; one after the other they are [0 0; 0 4].
 /// let matrices = [matrix![0, 2; 0, 0], matrix![0, 0; 2, 0]].map(|a| a.map(Rational::integer));
 /// let grows = |word: &[usize]| Product { word: word.to_vec(), radius: Rational::integer(3) };
 /// assert!(grows(&[0, 1]).check(&matrices).is_ok());
@@ -147,12 +145,11 @@ impl<const N: usize> Quadratics<N> {
     ///
     /// Source: de Bruijn 1946; Lee and Dullerud 2006.
     ///
-    /// # Examples
+    /// Example: two letters, one remembered: a node is the last letter, and every edge leads to the node of its own letter.
     ///
     /// ```
     /// use immaculate::steady::certificate::Quadratics;
     ///
-    /// // Two letters, one remembered: a node is the last letter, and every edge leads to the node of its own letter.
     /// let edges = Quadratics::<1>::memory(2, 1);
     /// assert_eq!(edges.len(), 4);
     /// assert!(edges.iter().all(|edge| edge.to == edge.letter));

@@ -137,12 +137,11 @@ struct Round {
 ///
 /// Source: derbez2000, section 2.2, algorithm.
 ///
-/// # Examples
+/// Example: A target at a = 50 m/s²: constant acceleration becomes certain. The printed weight then does not let the rounds end.
 ///
 /// ```
 /// use immaculate::steady::long_term::{Form, Setting, predict};
 ///
-/// // A target at a = 50 m/s²: constant acceleration becomes certain. The printed weight then does not let the rounds end.
 /// let setting = Setting { interval: 2.0, acceleration: 50.0, measurement_variance: 0.05, noises: [5.0, 5.0], stay: 0.95 };
 /// assert!(!predict(&setting, Form::Printed).unwrap().converged);
 /// let corrected = predict(&setting, Form::Corrected).unwrap();
@@ -311,12 +310,11 @@ fn corrected_round(setting: &Setting, round: &Round) -> Option<Round> {
 ///
 /// Source: derbez2000, step 4, which has s for both; ∫ N(ν; 0, s) N(ν; b, v) dν = N(b; 0, s + v).
 ///
-/// # Examples
+/// Example: an innovation with the mean 2 and the variance 3, believed to have 1: ln N(2; 0, 4) = −(ln 8π + 2²/4)/2.
 ///
 /// ```
 /// use immaculate::steady::long_term::expected_log_likelihood;
 ///
-/// // An innovation with the mean 2 and the variance 3, believed to have 1: ln N(2; 0, 4) = −(ln 8π + 2²/4)/2
 /// let exact = -((8.0 * std::f64::consts::PI).ln() + 1.0) / 2.0;
 /// assert!((expected_log_likelihood(2.0, 1.0, 3.0) - exact).abs() < 1e-15); // a few units of the last place
 /// ```
@@ -339,13 +337,12 @@ fn normalised(predicted: &[f64; 2], log_likelihoods: &[f64; 2]) -> [f64; 2] {
 ///
 /// Source: derbez2000 (7) for two filters at once; exact as long as gains and probabilities are constant.
 ///
-/// # Examples
+/// Example: two filters that do not mix; t = a = R = 1. Constant velocity errs by a variance of 2/3 and a lag of 1/2: 2/3 + 1/4.
 ///
 /// ```
 /// use immaculate::steady::long_term::{JointErrors, Setting};
 /// use nalgebra::vector;
 ///
-/// // Two filters that do not mix; t = a = R = 1. Constant velocity errs by a variance of 2/3 and a lag of 1/2: 2/3 + 1/4.
 /// let setting = Setting { interval: 1.0, acceleration: 1.0, measurement_variance: 1.0, noises: [1.0, 1.0], stay: 1.0 };
 /// let gains = [vector![0.75, 0.5, 0.0], vector![0.75, 0.5, 1.0 / 6.0]];
 /// let errors = JointErrors::new(&setting, &gains, &[vec![1.0, 0.0], vec![0.0, 1.0]]).unwrap();
@@ -393,7 +390,7 @@ impl JointErrors {
     ///
     /// Source: derbez2000, step 6 corrected: the paper's Σ μᵢ E eⁱ eⁱᵀ is above it, since Σ μᵢ eⁱeⁱᵀ − e eᵀ = Σ μᵢ (eⁱ − e)(eⁱ − e)ᵀ.
     ///
-    /// # Examples
+    /// Example: two filters that mix in halves, on an acceleration of 1 m/s².
     ///
     /// ```
     /// use immaculate::steady::long_term::{JointErrors, Setting};

@@ -42,7 +42,7 @@ impl<T: Field> Mismatch<T> {
     /// A₊ = (I − K₊H) F,   b₊ = (I − K₊H) ΔF xₙ = (I − K₊H) b
     /// ```
     ///
-    /// # Examples
+    /// Example: for t = 1, a = 1, K = [3/4, 1/2, 0]ᵀ: b = [1/2, 1, 1]ᵀ and (I − K H) b = [1/2 − 3/8, 1 − 1/4, 1]ᵀ.
     ///
     /// ```
     /// use immaculate::model::acceleration::{embedded_constant_velocity, position_matrix};
@@ -50,7 +50,6 @@ impl<T: Field> Mismatch<T> {
     /// use immaculate::steady::mismatch::{Mismatch, motion_missed};
     /// use nalgebra::vector;
     ///
-    /// // t = 1, a = 1, K = [3/4, 1/2, 0]ᵀ: b = [1/2, 1, 1]ᵀ and (I − K H) b = [1/2 − 3/8, 1 − 1/4, 1]ᵀ
     /// let (q, one) = (Rational::new, Rational::new(1, 1));
     /// let gain = vector![q(3, 4), q(1, 2), q(0, 1)];
     /// let missed = motion_missed(&one, &one);
@@ -77,7 +76,8 @@ impl<T: Field> Mismatch<T> {
     ///
     /// Source: derbez2000 (7), in which it stands as (I − A₊)⁻¹ b₊; undecided where I − A₊ has no inverse.
     ///
-    /// # Examples
+    /// Example: A₊ = [1/4 1/4 0; −1/2 1/2 0; 0 0 0] and b₊ = [1/8, 3/4, 1]ᵀ carry m = [1/2, 1, 1]ᵀ into itself: 1/8 + 1/4 + 1/8 = 1/2 and
+    /// −1/4 + 1/2 + 3/4 = 1.
     ///
     /// ```
     /// use immaculate::model::acceleration::{embedded_constant_velocity, position_matrix};
@@ -85,8 +85,6 @@ impl<T: Field> Mismatch<T> {
     /// use immaculate::steady::mismatch::{Mismatch, motion_missed};
     /// use nalgebra::vector;
     ///
-    /// // A₊ = [1/4 1/4 0; −1/2 1/2 0; 0 0 0] and b₊ = [1/8, 3/4, 1]ᵀ carry m = [1/2, 1, 1]ᵀ into itself:
-    /// // 1/8 + 1/4 + 1/8 = 1/2 and −1/4 + 1/2 + 3/4 = 1.
     /// let (q, one) = (Rational::new, Rational::new(1, 1));
     /// let gain = vector![q(3, 4), q(1, 2), q(0, 1)];
     /// let missed = motion_missed(&one, &one);
@@ -116,7 +114,7 @@ impl<T: Field> Mismatch<T> {
     /// Why: the second moment of A₊e + b₊ − K₊v, where E e = (I − A₊)⁻¹b₊ in the steady state and v is independent of e. It is an equality
     /// for the whole matrix; the paper states it as a bound of its trace, which adds m² and (m/s)² and always contains a².
     ///
-    /// # Examples
+    /// Example: for t = a = R = 1, K = [3/4, 1/2, 0]ᵀ: the scatter [2/3 1/3; 1/3 1/3] and the lag m = [1/2, 1, 1]ᵀ, times its transpose.
     ///
     /// ```
     /// use immaculate::model::acceleration::{embedded_constant_velocity, position_matrix};
@@ -124,7 +122,6 @@ impl<T: Field> Mismatch<T> {
     /// use immaculate::steady::mismatch::{Mismatch, motion_missed};
     /// use nalgebra::{matrix, vector};
     ///
-    /// // t = a = R = 1, K = [3/4, 1/2, 0]ᵀ: the scatter [2/3 1/3; 1/3 1/3] and the lag m = [1/2, 1, 1]ᵀ, times its transpose.
     /// let (q, one) = (Rational::new, Rational::new(1, 1));
     /// let gain = vector![q(3, 4), q(1, 2), q(0, 1)];
     /// let missed = motion_missed(&one, &one);
@@ -169,7 +166,7 @@ impl<T: Field + PartialOrd> Mismatch<T> {
     /// exactly one solution. A solution is the long-term error only if ρ(A₊) < 1; that is for the caller to know, see
     /// [`has_radius_below`](super::polynomial::has_radius_below).
     ///
-    /// # Examples
+    /// Example: for t = a = R = 1, K = [3/4, 1/2, 0]ᵀ: a variance of 2/3 and a lag of 1/2, 2/3 + 1/4.
     ///
     /// ```
     /// use immaculate::model::acceleration::{embedded_constant_velocity, position_matrix};
@@ -177,7 +174,6 @@ impl<T: Field + PartialOrd> Mismatch<T> {
     /// use immaculate::steady::mismatch::{Mismatch, motion_missed};
     /// use nalgebra::vector;
     ///
-    /// // t = a = R = 1, K = [3/4, 1/2, 0]ᵀ: a variance of 2/3 and a lag of 1/2, 2/3 + 1/4.
     /// let (q, one) = (Rational::new, Rational::new(1, 1));
     /// let missed = motion_missed(&one, &one);
     /// let filter = |gain| Mismatch::new(&embedded_constant_velocity(&one), &position_matrix(), gain, &missed, one.clone());
@@ -200,14 +196,13 @@ impl<T: Field + PartialOrd> Mismatch<T> {
 ///
 /// Source: derbez2000, section 2.2, not numbered.
 ///
-/// # Examples
+/// Example: for a = 3, t = 2: 3 · [2, 2, 1].
 ///
 /// ```
 /// use immaculate::number::{Field, Rational};
 /// use immaculate::steady::mismatch::motion_missed;
 /// use nalgebra::vector;
 ///
-/// // a = 3, t = 2: 3 · [2, 2, 1]
 /// let missed = motion_missed(&Rational::integer(3), &Rational::integer(2));
 /// assert_eq!(missed, vector![6, 6, 3].map(Rational::integer));
 /// ```
@@ -229,14 +224,13 @@ pub fn motion_missed<T: Field>(acceleration: &T, interval: &T) -> Vector3<T> {
 ///
 /// Source: the solution of derbez2000 (7); in the tracking literature Benedict and Bordner 1962.
 ///
-/// # Examples
+/// Example: for α = 3/4, β = 1/2, t = 1, a = 1: (1/4)/(1/2) and (3/2 − 1/2)/(2 · 1/2).
 ///
 /// ```
 /// use immaculate::number::Rational;
 /// use immaculate::steady::mismatch::alpha_beta_lag;
 /// use nalgebra::vector;
 ///
-/// // α = 3/4, β = 1/2, t = 1, a = 1: (1/4)/(1/2) and (3/2 − 1/2)/(2 · 1/2)
 /// let (q, one) = (Rational::new, Rational::new(1, 1));
 /// let lag = alpha_beta_lag(&vector![q(3, 4), q(1, 2), q(0, 1)], &one, &one);
 /// assert_eq!(lag, vector![q(1, 2), q(1, 1), q(1, 1)]);
@@ -256,14 +250,13 @@ pub fn alpha_beta_lag<T: Field>(gain: &Vector3<T>, acceleration: &T, interval: &
 /// Source: H (F m + b), with m from [`alpha_beta_lag`]. The bias of step 4 of the paper's algorithm, a t²/2, is that of a filter without a
 /// lag: smaller by the factor β/2.
 ///
-/// # Examples
+/// Example: for a = 1, t = 1, β = 1/2: 1/(1/2), four times the a t²/2 of step 4.
 ///
 /// ```
 /// use immaculate::number::Rational;
 /// use immaculate::steady::mismatch::alpha_beta_innovation;
 /// use nalgebra::vector;
 ///
-/// // a = 1, t = 1, β = 1/2: 1/(1/2), four times the a t²/2 of step 4.
 /// let (q, one) = (Rational::new, Rational::new(1, 1));
 /// let bias = alpha_beta_innovation(&vector![q(3, 4), q(1, 2), q(0, 1)], &one, &one);
 /// assert_eq!(bias, q(2, 1));
@@ -290,15 +283,14 @@ pub fn alpha_beta_innovation<T: Field>(gain: &Vector3<T>, acceleration: &T, inte
 ///
 /// Source: Benedict and Bordner 1962, variance reduction of the α-β filter.
 ///
-/// # Examples
+/// Example: for α = 3/4, β = 1/2, R = t = 1: 1/(3/4 · (4 − 3/2 − 1/2)) = 2/3 times 2 · 9/16 + 1/2 · (2 − 9/4) = 1, 1/2 · (3/2 − 1/2) = 1/2 and
+/// 2 · 1/4 = 1/2.
 ///
 /// ```
 /// use immaculate::number::Rational;
 /// use immaculate::steady::mismatch::alpha_beta_scatter;
 /// use nalgebra::{matrix, vector};
 ///
-/// // α = 3/4, β = 1/2, R = t = 1: 1/(3/4 · (4 − 3/2 − 1/2)) = 2/3 times
-/// // 2 · 9/16 + 1/2 · (2 − 9/4) = 1, 1/2 · (3/2 − 1/2) = 1/2 and 2 · 1/4 = 1/2
 /// let (q, one) = (Rational::new, Rational::new(1, 1));
 /// let scatter = alpha_beta_scatter(&vector![q(3, 4), q(1, 2), q(0, 1)], &one, &one);
 /// assert_eq!(scatter, matrix![2, 1, 0; 1, 1, 0; 0, 0, 0].map(|entry| q(entry, 3)));
@@ -325,7 +317,7 @@ pub fn alpha_beta_scatter<T: Field>(gain: &Vector3<T>, measurement_variance: &T,
 ///
 /// Source: Cramer 1750; undecided where |A| is zero.
 ///
-/// # Examples
+/// Example: a triangular matrix, and one that has no inverse.
 ///
 /// ```
 /// use immaculate::number::{Field, Rational};

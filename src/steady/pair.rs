@@ -35,14 +35,13 @@ use nalgebra::{Matrix1, Matrix3, SMatrix, Vector3};
 ///
 /// Source: derbez2000, section 2.2.
 ///
-/// # Examples
+/// Example: for θ = 1/2: K = [3/4, 1/2, 0]ᵀ, so (I − K H) F has 1/4 of F's first row, and its second less 1/2 of the first.
 ///
 /// ```
 /// use immaculate::number::Rational;
 /// use immaculate::steady::pair::velocity_matrix;
 /// use nalgebra::matrix;
 ///
-/// // θ = 1/2: K = [3/4, 1/2, 0]ᵀ, so (I − K H) F has 1/4 of F's first row, and its second less 1/2 of the first.
 /// let closed_loop = velocity_matrix(&Rational::new(1, 2));
 /// assert_eq!(closed_loop, matrix![1, 1, 0; -2, 2, 0; 0, 0, 0].map(|entry| Rational::new(entry, 4)));
 /// ```
@@ -60,14 +59,13 @@ pub fn velocity_matrix<T: Field>(root: &T) -> Matrix3<T> {
 ///
 /// Source: derbez2000, section 2.2, as [`velocity_matrix`].
 ///
-/// # Examples
+/// Example: for θ = 1/2: K = [3/4, 1/2, 1/6]ᵀ and F's first row is [1, 1, 1/2].
 ///
 /// ```
 /// use immaculate::number::Rational;
 /// use immaculate::steady::pair::acceleration_matrix;
 /// use nalgebra::matrix;
 ///
-/// // θ = 1/2: K = [3/4, 1/2, 1/6]ᵀ and F's first row is [1, 1, 1/2].
 /// let closed_loop = acceleration_matrix(&Rational::new(1, 2));
 /// assert_eq!(closed_loop, matrix![6, 6, 3; -12, 12, 18; -4, -4, 22].map(|entry| Rational::new(entry, 24)));
 /// ```
@@ -95,7 +93,7 @@ fn closed_loop<T: Field>(motion: Matrix3<T>, gain: &Vector3<T>) -> Matrix3<T> {
 /// | μⁱʲ₊  | `mixing`   | R     | μᵢ∣ⱼ over i, for one j                                |
 /// | (I − Kʲ₊H)Fʲ | `matrices` | R × N × N | Aᵢ                                          |
 ///
-/// # Examples
+/// Example: A₁ = 3/2, A₂ = −3/2, and each filter takes 3/4 of its own: M₁ = 3/4 · 3/2 − 1/4 · 3/2 = 3/4, which looks stable.
 ///
 /// ```
 /// use immaculate::number::Rational;
@@ -103,7 +101,6 @@ fn closed_loop<T: Field>(motion: Matrix3<T>, gain: &Vector3<T>) -> Matrix3<T> {
 /// use immaculate::steady::polynomial::has_radius_below;
 /// use nalgebra::matrix;
 ///
-/// // A₁ = 3/2, A₂ = −3/2, and each filter takes 3/4 of its own: M₁ = 3/4 · 3/2 − 1/4 · 3/2 = 3/4, which looks stable.
 /// let q = Rational::new;
 /// let matrices = [matrix![q(3, 2)], matrix![q(-3, 2)]];
 /// let mixing = [vec![q(3, 4), q(1, 4)], vec![q(1, 4), q(3, 4)]];
@@ -140,13 +137,12 @@ pub fn remark_1_matrix<T: Field, const N: usize>(mixing: &[T], matrices: &[SMatr
 ///
 /// Source: the mixed estimate of (1) and the update of section 3, without noise.
 ///
-/// # Examples
+/// Example: e₁ ↦ 2 (3/4 e₁ + 1/4 e₂), e₂ ↦ 4 (1/2 e₁ + 1/2 e₂).
 ///
 /// ```
 /// use immaculate::steady::pair::frozen_matrix;
 /// use nalgebra::matrix;
 ///
-/// // e₁ ↦ 2 (3/4 e₁ + 1/4 e₂), e₂ ↦ 4 (1/2 e₁ + 1/2 e₂)
 /// let mixing = [vec![0.75, 0.25], vec![0.5, 0.5]];
 /// assert_eq!(frozen_matrix(&mixing, &[matrix![2.0], matrix![4.0]]), [[1.5, 0.5], [2.0, 2.0]]);
 /// ```
@@ -165,7 +161,7 @@ pub fn frozen_matrix<T: Field, const N: usize>(mixing: &[Vec<T>], matrices: &[SM
 ///
 /// Source: derbez2000 (8), with its factors in the order in which they act.
 ///
-/// # Examples
+/// Example: two matrices that do not commute.
 ///
 /// ```
 /// use immaculate::steady::pair::product;

@@ -36,7 +36,7 @@ impl<T: Field, const N: usize> Perturbation<T, N> {
     ///
     /// Source: derbez2000, section 3.1, not numbered.
     ///
-    /// # Examples
+    /// Example: constant velocity over two seconds, whose velocity becomes less certain.
     ///
     /// ```
     /// use immaculate::steady::perturbation::Perturbation;
@@ -74,14 +74,13 @@ impl<T: Field, const N: usize> Perturbation<T, N> {
     ///
     /// Why: A = (I − K H) F with the gain at the moved covariance.
     ///
-    /// # Examples
+    /// Example: for F = H = R = P⁻ = ΔP = 1: A(ε) = 1 − (1 + ε)/(2 + ε), 1/2 and 1/3.
     ///
     /// ```
     /// use immaculate::number::Rational;
     /// use immaculate::steady::perturbation::Perturbation;
     /// use nalgebra::matrix;
     ///
-    /// // F = H = R = P⁻ = ΔP = 1: A(ε) = 1 − (1 + ε)/(2 + ε), 1/2 and 1/3.
     /// let one = || matrix![Rational::new(1, 1)];
     /// let [transition, predicted, change] = [one(), one(), one()];
     /// let filter = Perturbation { transition, measurement: one(), measurement_variance: Rational::new(1, 1), predicted, change };
@@ -108,14 +107,13 @@ impl<T: Field, const N: usize> Perturbation<T, N> {
     ///
     /// Why: d(P Hᵀ/(P₁₁ + R)) = ΔP Hᵀ/(P₁₁ + R) − P Hᵀ ΔP₁₁/(P₁₁ + R)², and K = P Hᵀ/(P₁₁ + R).
     ///
-    /// # Examples
+    /// Example: for F = H = R = P⁻ = ΔP = 1: A(ε) = 1/(2 + ε), whose derivative at zero is −1/4; here (1/2 − 1)/2.
     ///
     /// ```
     /// use immaculate::number::Rational;
     /// use immaculate::steady::perturbation::Perturbation;
     /// use nalgebra::matrix;
     ///
-    /// // F = H = R = P⁻ = ΔP = 1: A(ε) = 1/(2 + ε), whose derivative at zero is −1/4; here (1/2 − 1)/2.
     /// let one = || matrix![Rational::new(1, 1)];
     /// let [transition, predicted, change] = [one(), one(), one()];
     /// let filter = Perturbation { transition, measurement: one(), measurement_variance: Rational::new(1, 1), predicted, change };
@@ -140,14 +138,13 @@ impl<T: Field, const N: usize> Perturbation<T, N> {
     /// Why: it agrees with [`Perturbation::closed_loop`] to first order and not beyond. With the same denominator, the one with ε, in both
     /// terms it would be no expansion but the exact value: [`Perturbation::exact_expansion`].
     ///
-    /// # Examples
+    /// Example: for F = H = R = P⁻ = ΔP = 1 and ε = 1: 1/2 + 1/2 · 1/2 − 1 · 1/3, where the closed loop is 1/3.
     ///
     /// ```
     /// use immaculate::number::Rational;
     /// use immaculate::steady::perturbation::Perturbation;
     /// use nalgebra::matrix;
     ///
-    /// // F = H = R = P⁻ = ΔP = 1 and ε = 1: 1/2 + 1/2 · 1/2 − 1 · 1/3, where the closed loop is 1/3.
     /// let one = || matrix![Rational::new(1, 1)];
     /// let [transition, predicted, change] = [one(), one(), one()];
     /// let filter = Perturbation { transition, measurement: one(), measurement_variance: Rational::new(1, 1), predicted, change };
@@ -171,14 +168,13 @@ impl<T: Field, const N: usize> Perturbation<T, N> {
     ///
     /// Source: P⁻Hᵀ/(S + εδ) = K − K εδ/(S + εδ) with S = P⁻₁₁ + R and δ = (F ΔP Fᵀ)₁₁; found here.
     ///
-    /// # Examples
+    /// Example: for F = H = R = P⁻ = ΔP = 1 and ε = 1: 1/2 + (1/2 − 1)/3, the closed loop itself.
     ///
     /// ```
     /// use immaculate::number::Rational;
     /// use immaculate::steady::perturbation::Perturbation;
     /// use nalgebra::matrix;
     ///
-    /// // F = H = R = P⁻ = ΔP = 1 and ε = 1: 1/2 + (1/2 − 1)/3, the closed loop itself.
     /// let one = || matrix![Rational::new(1, 1)];
     /// let [transition, predicted, change] = [one(), one(), one()];
     /// let filter = Perturbation { transition, measurement: one(), measurement_variance: Rational::new(1, 1), predicted, change };
@@ -230,14 +226,13 @@ impl<T: Field, const N: usize> Perturbation<T, N> {
 ///
 /// Why: x̂ⁱ − x̂⁰ʲ = x̂ⁱ − μⁱ∣ʲ x̂ⁱ − μˡ∣ʲ x̂ˡ = μˡ∣ʲ (x̂ⁱ − x̂ˡ). Over both i with their weights it sums to μ¹∣ʲ μ²∣ʲ D.
 ///
-/// # Examples
+/// Example: estimates 0 and 4, mixed 3/4 to 1/4: the mixed one is 1, and the first is 1 away from it, (1/4 · 4)².
 ///
 /// ```
 /// use immaculate::number::Rational;
 /// use immaculate::steady::perturbation::spread_term;
 /// use nalgebra::matrix;
 ///
-/// // Estimates 0 and 4, mixed 3/4 to 1/4: the mixed one is 1, and the first is 1 away from it, (1/4 · 4)².
 /// assert_eq!(spread_term(&Rational::new(1, 4), &matrix![Rational::new(16, 1)]), matrix![Rational::new(1, 1)]);
 /// ```
 ///
@@ -260,14 +255,14 @@ pub fn spread_term<T: Field, const N: usize>(weight: &T, gap: &SMatrix<T, N, N>)
 /// | Pᵉʲ   | `errors[j]`    | N × N | true second moment of filter j's error                                |
 /// | i     | `mode`         |       | the mode whose covariance is mixed                                    |
 ///
-/// # Examples
+/// Example: errors 1 and −1: each has the second moment 1, their difference 4. Mixed in halves, the spread is 1/4 · 4 and its "bound" 1/4 ·
+/// 1.
 ///
 /// ```
 /// use immaculate::number::Rational;
 /// use immaculate::steady::perturbation::{printed_spread_bound, spread_term};
 /// use nalgebra::matrix;
 ///
-/// // Errors 1 and −1: each has the second moment 1, their difference 4. Mixed in halves, the spread is 1/4 · 4 and its "bound" 1/4 · 1.
 /// let q = Rational::new;
 /// let mixing = vec![vec![q(1, 2), q(1, 2)]; 2];
 /// let bound = printed_spread_bound(&mixing, &[matrix![q(1, 1)], matrix![q(1, 1)]], 0);
@@ -301,14 +296,13 @@ pub fn printed_spread_bound<T: Field, const N: usize>(
 ///
 /// Source: 2eeᵀ + 2ffᵀ − (e − f)(e − f)ᵀ = (e + f)(e + f)ᵀ ⪰ 0; the factor 2 is reached for f = −e.
 ///
-/// # Examples
+/// Example: errors 1 and −1, mixed in halves: the spread is 1/4 · 4 = 1, and the bound 2 · 1/4 · (1 + 1) is reached.
 ///
 /// ```
 /// use immaculate::number::Rational;
 /// use immaculate::steady::perturbation::spread_bound;
 /// use nalgebra::matrix;
 ///
-/// // Errors 1 and −1, mixed in halves: the spread is 1/4 · 4 = 1, and the bound 2 · 1/4 · (1 + 1) is reached.
 /// let one = matrix![Rational::new(1, 1)];
 /// assert_eq!(spread_bound(&Rational::new(1, 2), [&one, &one]), one);
 /// ```
@@ -334,13 +328,12 @@ pub fn spread_bound<T: Field, const N: usize>(weight: &T, errors: [&SMatrix<T, N
 /// Why: Bayes' rule. It is 1 − a at μ₁ = ½ and rises to 1 as mode 1 becomes certain, however close to one a is: who is almost surely in
 /// mode 1 and arrives in mode 2 has come from mode 1.
 ///
-/// # Examples
+/// Example: a = 19/20. Between equals the weight is 1 − a; with μ₁ = 19/20 it is 1/20 · 19/20 over twice as much.
 ///
 /// ```
 /// use immaculate::number::Rational;
 /// use immaculate::steady::perturbation::{other_mode_weight, printed_weight};
 ///
-/// // a = 19/20. Between equals the weight is 1 − a; with μ₁ = 19/20 it is 1/20 · 19/20 over twice as much.
 /// let (q, stay) = (Rational::new, Rational::new(19, 20));
 /// assert_eq!(other_mode_weight(&stay, &q(1, 2)), printed_weight(&stay));
 /// assert_eq!(other_mode_weight(&stay, &q(19, 20)), q(1, 2));
@@ -359,7 +352,7 @@ pub fn other_mode_weight<T: Field>(stay: &T, probability: &T) -> T {
 ///
 /// Source: derbez2000, section 3.1, not numbered: "if p₁₂ = p₂₁ = 1 − a then one can show ε ≈ (1 − a)²".
 ///
-/// # Examples
+/// Example: a = 19/20.
 ///
 /// ```
 /// use immaculate::number::Rational;
@@ -380,13 +373,12 @@ pub fn printed_weight<T: Field>(stay: &T) -> T {
 ///
 /// Source: the definition of a covariance.
 ///
-/// # Examples
+/// Example: I + [1, 2]ᵀ [1, 2].
 ///
 /// ```
 /// use immaculate::steady::perturbation::second_moment;
 /// use nalgebra::{matrix, vector};
 ///
-/// // I + [1, 2]ᵀ [1, 2]
 /// let moment = second_moment(&vector![1.0, 2.0], &matrix![1.0, 0.0; 0.0, 1.0]);
 /// assert_eq!(moment, matrix![2.0, 2.0; 2.0, 5.0]);
 /// ```

@@ -16,7 +16,7 @@ pub type Rows<T> = Vec<Vec<T>>;
 ///
 /// Source: a change of form.
 ///
-/// # Examples
+/// Example: two rows of two.
 ///
 /// ```
 /// use immaculate::steady::polynomial::rows_of;
@@ -37,14 +37,13 @@ pub fn rows_of<T: Field, const R: usize, const C: usize>(matrix: &SMatrix<T, R, 
 ///
 /// Source: Faddeev and Leverrier; Gantmacher, The Theory of Matrices, chapter IV, section 5.
 ///
-/// # Examples
+/// Example: (λ − 2)(λ − 3) = 6 − 5λ + λ².
 ///
 /// ```
 /// use immaculate::number::{Field, Rational};
 /// use immaculate::steady::polynomial::{characteristic_polynomial, rows_of};
 /// use nalgebra::matrix;
 ///
-/// // (λ − 2)(λ − 3) = 6 − 5λ + λ²
 /// let matrix = matrix![2, 1; 0, 3].map(Rational::integer);
 /// assert_eq!(characteristic_polynomial(&rows_of(&matrix)), [6, -5, 1].map(Rational::integer));
 /// ```
@@ -101,14 +100,13 @@ fn times<T: Field>(left: &Rows<T>, right: &Rows<T>) -> Rows<T> {
 ///
 /// Source: Schur 1917, Cohn 1922.
 ///
-/// # Examples
+/// Example: ½ − λ + λ² has the roots (1 ± i)/2, whose square of the magnitude is ½.
 ///
 /// ```
 /// use immaculate::number::Rational;
 /// use immaculate::steady::polynomial::is_stable_polynomial;
 ///
 /// let q = Rational::new;
-/// // ½ − λ + λ² has the roots (1 ± i)/2, whose square of the magnitude is ½.
 /// assert_eq!(is_stable_polynomial(&[q(1, 2), q(-1, 1), q(1, 1)]), Some(true));
 /// // 1 − 5/2 λ + λ² has ½ and 2.
 /// assert_eq!(is_stable_polynomial(&[q(1, 1), q(-5, 2), q(1, 1)]), Some(false));
@@ -135,13 +133,12 @@ pub fn is_stable_polynomial<T: Field + PartialOrd>(coefficients: &[T]) -> Option
 ///
 /// Source: the roots of det(λI − A) are bound times those of the polynomial with coefficients cₖ boundᵏ.
 ///
-/// # Examples
+/// Example: [0 1; −½ 1] has the eigenvalues (1 ± i)/2 of magnitude √½ = 0.707….
 ///
 /// ```
 /// use immaculate::number::Rational;
 /// use immaculate::steady::polynomial::has_radius_below;
 ///
-/// // [0 1; −½ 1] has the eigenvalues (1 ± i)/2 of magnitude √½ = 0.707…
 /// let q = Rational::new;
 /// let rows = vec![vec![q(0, 1), q(1, 1)], vec![q(-1, 2), q(1, 1)]];
 /// assert_eq!(has_radius_below(&rows, &q(71, 100)), Some(true));

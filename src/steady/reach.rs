@@ -18,13 +18,13 @@ use std::fmt::Write;
 ///
 /// Source: Kalman 1963; the subspace is carried into itself by F (Cayley-Hamilton).
 ///
-/// # Examples
+/// Example: constant velocity. Who sees the position sees the velocity too; who sees the velocity alone misses a position that stays: λ −
+/// 1.
 ///
 /// ```
 /// use immaculate::number::{Field, Rational};
 /// use immaculate::steady::reach::unseen_part;
 ///
-/// // Constant velocity. Who sees the position sees the velocity too; who sees the velocity alone misses a position that stays: λ − 1.
 /// let rows = |rows: &[[i64; 2]]| rows.iter().map(|row| row.map(Rational::integer).to_vec()).collect();
 /// let motion = rows(&[[1, 1], [0, 1]]);
 /// assert_eq!(unseen_part(&motion, &rows(&[[1, 0]])), [1].map(Rational::integer));
@@ -97,7 +97,7 @@ fn null_space(mut rows: Rows<Rational>, n: usize) -> (Rows<Rational>, Vec<usize>
 ///
 /// Source: for messages.
 ///
-/// # Examples
+/// Example: the highest power first, and a true minus.
 ///
 /// ```
 /// use immaculate::number::{Field, Rational};

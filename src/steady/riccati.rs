@@ -51,7 +51,7 @@ impl<T: Field, const N: usize, const M: usize> Riccati<T, N, M> {
     ///
     /// Why: update and prediction of the Kalman filter; covariances do not depend on what is measured.
     ///
-    /// # Examples
+    /// Example: constant velocity with t = 1, q = 1 and R = 1, whose steady gain has α = 3/4 and β = 1/2.
     ///
     /// ```
     /// use immaculate::number::{Field, Rational};
@@ -81,7 +81,7 @@ impl<T: Field, const N: usize, const M: usize> Riccati<T, N, M> {
 
     /// The gain at a predicted covariance, K = P Hᵀ (H P Hᵀ + R)⁻¹ — derbez2000 (2), (4).
     ///
-    /// # Examples
+    /// Example: the same filter as above.
     ///
     /// ```
     /// use immaculate::number::{Field, Rational};
@@ -111,7 +111,7 @@ impl<T: Field, const N: usize, const M: usize> Riccati<T, N, M> {
     ///
     /// Source: derbez2000, section 2.2, the definition of A₊ below (7).
     ///
-    /// # Examples
+    /// Example: the same filter as above.
     ///
     /// ```
     /// use immaculate::number::{Field, Rational};
@@ -148,14 +148,13 @@ impl<T: Field + PartialOrd, const N: usize, const M: usize> Riccati<T, N, M> {
     ///
     /// Source: Anderson 1978; Chu, Fan, Lin and Wang 2004.
     ///
-    /// # Examples
+    /// Example: for F = H = Q = R = 1: f(P) = P/(P + 1) + 1 goes 0, 1, 3/2, 8/5, 21/13: two Fibonacci numbers further at each step.
     ///
     /// ```
     /// use immaculate::number::Rational;
     /// use immaculate::steady::riccati::Riccati;
     /// use nalgebra::matrix;
     ///
-    /// // F = H = Q = R = 1: f(P) = P/(P + 1) + 1 goes 0, 1, 3/2, 8/5, 21/13: two Fibonacci numbers further at each step.
     /// let one = matrix![Rational::new(1, 1)];
     /// let filter = Riccati { transition: one.clone(), measurement: one.clone(), noise: one.clone(), measurement_noise: one };
     /// assert_eq!(filter.doubled(0).unwrap()[0], Rational::new(1, 1));
@@ -205,15 +204,14 @@ fn inverse<T: Field + PartialOrd, const N: usize>(matrix: &SMatrix<T, N, N>) -> 
 ///
 /// Source: Lancaster and Rodman, Algebraic Riccati Equations, 1995, for the monotonicity; the certificate is put together here.
 ///
-/// # Examples
+/// Example: for F = H = Q = R = 1: P = P/(P + 1) + 1 is the golden section, 1.618…, and lies between 8/5 and 5/3: f(8/5) = 21/13 > 8/5 and
+/// f(5/3) = 13/8 < 5/3.
 ///
 /// ```
 /// use immaculate::number::Rational;
 /// use immaculate::steady::riccati::{Riccati, SteadyState};
 /// use nalgebra::matrix;
 ///
-/// // F = H = Q = R = 1: P = P/(P + 1) + 1 is the golden section, 1.618…, and lies between 8/5 and 5/3:
-/// // f(8/5) = 21/13 > 8/5 and f(5/3) = 13/8 < 5/3.
 /// let one = matrix![Rational::new(1, 1)];
 /// let filter = Riccati { transition: one.clone(), measurement: one.clone(), noise: one.clone(), measurement_noise: one };
 /// let between = |lower, upper| SteadyState { lower: matrix![lower], upper: matrix![upper] };
@@ -297,7 +295,7 @@ impl<const N: usize> SteadyState<N> {
     /// The middle comes from [`Riccati::doubled`] on enclosures, the distance from the Lyapunov equation W = A W Aᵀ + I of the closed loop
     /// there: f(P ± εW) is about P ± ε(W − I). Whatever is found is checked.
     ///
-    /// # Examples
+    /// Example: F = H = R = 1, with Q = 1 and with Q = 0.
     ///
     /// ```
     /// use immaculate::number::Rational;
@@ -351,14 +349,13 @@ impl<const N: usize> SteadyState<N> {
     ///
     /// Source: 0 ⪯ P − L ⪯ U − L, and an entry of a semidefinite matrix is no greater than the root of the product of its diagonal entries.
     ///
-    /// # Examples
+    /// Example: 8/5 ± (5/3 − 8/5): it holds 13/8, whose distance from 8/5 is 1/40 < 1/15, and does not hold 2.
     ///
     /// ```
     /// use immaculate::number::{Enclosure, Rational};
     /// use immaculate::steady::riccati::SteadyState;
     /// use nalgebra::matrix;
     ///
-    /// // 8/5 ± (5/3 − 8/5): it holds 13/8, whose distance from 8/5 is 1/40 < 1/15, and does not hold 2.
     /// let bounds = SteadyState { lower: matrix![Rational::new(8, 5)], upper: matrix![Rational::new(5, 3)] };
     /// Enclosure::with_precision(64, || {
     ///     assert!(bounds.entry(0, 0).contains(&Rational::new(13, 8)));
@@ -378,14 +375,13 @@ impl<const N: usize> SteadyState<N> {
     ///
     /// Source: derbez2000 (2), (4).
     ///
-    /// # Examples
+    /// Example: for F = H = Q = R = 1: P is the golden section φ, and K = φ/(φ + 1) = 1/φ = 0.618….
     ///
     /// ```
     /// use immaculate::number::{Enclosure, Rational};
     /// use immaculate::steady::riccati::{Riccati, SteadyState};
     /// use nalgebra::matrix;
     ///
-    /// // F = H = Q = R = 1: P is the golden section φ, and K = φ/(φ + 1) = 1/φ = 0.618…
     /// let one = matrix![Rational::new(1, 1)];
     /// let filter = Riccati { transition: one.clone(), measurement: one.clone(), noise: one.clone(), measurement_noise: one };
     /// let steady = SteadyState::certify(&filter, 64).unwrap();

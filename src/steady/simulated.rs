@@ -137,7 +137,7 @@ impl Grid {
     ///
     /// Source: derbez2000, figure 1.
     ///
-    /// # Examples
+    /// Example: ten rows of twenty columns.
     ///
     /// ```
     /// use immaculate::steady::simulated::Grid;
@@ -161,7 +161,7 @@ impl Grid {
     ///
     /// Source: derbez2000, figure 2.
     ///
-    /// # Examples
+    /// Example: twenty rows of twenty columns.
     ///
     /// ```
     /// use immaculate::steady::simulated::Grid;
@@ -199,13 +199,12 @@ impl Grid {
     ///
     /// `noise` gives the standard normal numbers of a grid point's run.
     ///
-    /// # Examples
+    /// Example: one point of figure 1, at rest, with a noise that is +1 and −1 in turn.
     ///
     /// ```
     /// use immaculate::steady::long_term::{Form, predict};
     /// use immaculate::steady::simulated::{Grid, Start, simulate};
     ///
-    /// // One point of figure 1, at rest, with a noise that is +1 and −1 in turn.
     /// let in_turn = || { let mut sign = -1.0; move || { sign = -sign; sign } };
     /// let mut grid = Grid::figure_1(2.0);
     /// grid.settings.truncate(1);

@@ -20,13 +20,12 @@ pub struct FilterStep<T, const N: usize, const M: usize> {
 ///
 /// Source: derbez2000 (2), its third line, with Aᵢ = (I − KᵢH) F.
 ///
-/// # Examples
+/// Example: ½ · 4 + 1 · 3 = 5, then ½ · 5 + 1 · 2.
 ///
 /// ```
 /// use immaculate::steady::unrolled::{FilterStep, recursion};
 /// use nalgebra::{matrix, vector};
 ///
-/// // ½ · 4 + 1 · 3 = 5, then ½ · 5 + 1 · 2
 /// let step = |z| FilterStep { closed_loop: matrix![0.5], gain: matrix![1.0], measurement: vector![z] };
 /// assert_eq!(recursion(&vector![4.0], &[step(3.0), step(2.0)]), vector![4.5]);
 /// ```
@@ -56,14 +55,13 @@ pub fn recursion<T: Field, const N: usize, const M: usize>(
 ///
 /// Why: x̂ᵢ = Aᵢ x̂₍i−1₎ + Kᵢ yᵢ, inserted into itself. The latest matrix stands on the left.
 ///
-/// # Examples
+/// Example: A₁ moves the second entry up, A₂ the first one down, and nothing is measured.
 ///
 /// ```
 /// use immaculate::number::{Field, Rational};
 /// use immaculate::steady::unrolled::{FilterStep, recursion, unrolled, unrolled_as_printed};
 /// use nalgebra::{SMatrix, SVector, matrix, vector};
 ///
-/// // A₁ moves the second entry up, A₂ the first one down, and nothing is measured.
 /// let whole = Rational::integer;
 /// let step = |a: SMatrix<i64, 2, 2>| FilterStep {
 ///     closed_loop: a.map(whole),
@@ -93,13 +91,12 @@ pub fn unrolled<T: Field, const N: usize, const M: usize>(
 ///
 /// Source: derbez2000 (8), as printed.
 ///
-/// # Examples
+/// Example: where the closed loops commute, as numbers do, nobody notices: 1/2 · 1/4 · 8 either way.
 ///
 /// ```
 /// use immaculate::steady::unrolled::{FilterStep, unrolled, unrolled_as_printed};
 /// use nalgebra::{matrix, vector};
 ///
-/// // Where the closed loops commute, as numbers do, nobody notices: 1/2 · 1/4 · 8 either way.
 /// let step = |a| FilterStep { closed_loop: matrix![a], gain: matrix![0.0], measurement: vector![0.0] };
 /// let (start, steps) = (vector![8.0], [step(0.5), step(0.25)]);
 /// assert_eq!(unrolled_as_printed(&start, &steps), unrolled(&start, &steps));

@@ -132,13 +132,12 @@ impl Filters {
 
     /// Decides whether the filters are stable together.
     ///
-    /// # Examples
+    /// Example: each is stable for every root in (0, 1); these two are not together: v² a grows.
     ///
     /// ```
     /// use immaculate::number::Rational;
     /// use immaculate::steady::verdict::{Depth, Filters, Verdict, word_text};
     ///
-    /// // Each is stable for every root in (0, 1); these two are not together: v² a grows.
     /// let filters = Filters::Roots([Rational::new(3, 4), Rational::new(1, 6)]);
     /// let Verdict::Unstable(product) = filters.decide(Depth::default()) else { panic!("they are unstable") };
     /// assert_eq!(word_text(&product.word), "vva");

@@ -236,7 +236,7 @@ pub fn read(text: &str) -> Result<Vec<Variant>, toml::de::Error> {
 /// All variants, in the order of `spec/variants.toml`. The file is part of the program, and a test reads it: one that could not be read
 /// would leave the catalogue empty.
 ///
-/// # Examples
+/// Example: the mistake that leaves out the spread of the means.
 ///
 /// ```
 /// use immaculate::oracle::variant::{Kind, catalogue};

@@ -75,13 +75,12 @@ pub const INITIAL_PROBABILITIES: [f64; 3] = [0.8, 0.1, 0.1];
 ///
 /// Rows are the modes at k − 1: constant velocity, left turn, right turn.
 ///
-/// # Examples
+/// Example: from constant velocity: 0.95 stay, 0.025 into either turn.
 ///
 /// ```
 /// use immaculate::imm::probability::predicted_mode_probability;
 /// use immaculate::paper::liu2017::TRANSITION;
 ///
-/// // From constant velocity: 0.95 stay, 0.025 into either turn.
 /// let chain = TRANSITION.map(Vec::from);
 /// let predicted = [0, 1, 2].map(|mode| predicted_mode_probability(&chain, &[1.0, 0.0, 0.0], mode));
 /// assert_eq!(predicted, [0.95, 0.025, 0.025]);

@@ -100,12 +100,11 @@ pub const DEGREE: f64 = std::f64::consts::PI / 180.0;
 ///
 /// Source: Hartikainen, Solin and Särkkä 2011, the example of an IMM filter with constant velocity and constant acceleration.
 ///
-/// # Examples
+/// Example: what the paper prints for its manoeuvres ends where those of the toolbox begin.
 ///
 /// ```
 /// use immaculate::paper::sustika2015::{MANOEUVRING_SECONDS, TOOLBOX_SECONDS};
 ///
-/// // What the paper prints for its manoeuvres ends where those of the toolbox begin.
 /// assert_eq!(MANOEUVRING_SECONDS, [[1, 50], [71, 120]]);
 /// assert!((0..2).all(|turn| MANOEUVRING_SECONDS[turn][1] + 1 == TOOLBOX_SECONDS[turn][0]));
 /// ```

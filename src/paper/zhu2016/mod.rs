@@ -68,13 +68,12 @@ pub const MEASUREMENT_VARIANCES: [f64; 2] = [20.0, 0.1];
 ///
 /// Rows are the modes at k − 1: constant velocity, right turn, left turn (the paper does not number its turns).
 ///
-/// # Examples
+/// Example: a target that is certainly in the right turn, the second mode, moves on by the second row.
 ///
 /// ```
 /// use immaculate::imm::probability::predicted_mode_probability;
 /// use immaculate::paper::zhu2016::TRANSITION;
 ///
-/// // Who is surely in the right turn is found in the first row's place of each mode: 0.1, 0.8, 0.1.
 /// let chain = TRANSITION.map(Vec::from);
 /// let predicted = [0, 1, 2].map(|mode| predicted_mode_probability(&chain, &[0.0, 1.0, 0.0], mode));
 /// assert_eq!(predicted, [0.1, 0.8, 0.1]);
