@@ -24,14 +24,15 @@
 //!
 //! # How a program is asked
 //!
-//! [`subject`] has the trait that a program under test is seen by. A filter in Rust implements it; [`process`] is one in any other language,
-//! started once and spoken to in JSON lines; [`folder`] reads answers that were written to files; [`answer`] is the other side of the protocol.
+//! [`subject`] has the trait that a program under test is seen by. A filter in Rust implements it; [`process`] is one in any other
+//! language, started once and spoken to in JSON lines; [`folder`] reads answers that were written to files; [`answer`] is the other side
+//! of the protocol.
 //!
 //! # How it is judged
 //!
-//! [`judge`] compares each shown value with the certified one and, if it is off, with its own equation on the program's own earlier values:
-//! what these explain was inherited, and what they do not explain is a fault. [`variant`] is the catalogue of what can be done otherwise, and
-//! [`diagnose`] finds which of it was done. [`check`](mod@check) does all of this over all cases:
+//! [`judge`] compares each shown value with the certified one and, if it is off, with its own equation on the program's own earlier
+//! values: what these explain was inherited, and what they do not explain is a fault. [`variant`] is the catalogue of what can be done
+//! otherwise, and [`diagnose`] finds which of it was done. [`check`](mod@check) does all of this over all cases:
 //!
 //! ```
 //! use immaculate::oracle::check::{Selection, check};

@@ -283,8 +283,8 @@ pub fn alpha_beta_innovation<T: Field>(gain: &Vector3<T>, acceleration: &T, inte
 ///
 /// Source: Benedict and Bordner 1962, variance reduction of the α-β filter.
 ///
-/// Example: for α = 3/4, β = 1/2, R = t = 1: 1/(3/4 · (4 − 3/2 − 1/2)) = 2/3 times 2 · 9/16 + 1/2 · (2 − 9/4) = 1, 1/2 · (3/2 − 1/2) = 1/2 and
-/// 2 · 1/4 = 1/2.
+/// Example: for α = 3/4, β = 1/2, R = t = 1: 1/(3/4 · (4 − 3/2 − 1/2)) = 2/3 times 2 · 9/16 + 1/2 · (2 − 9/4) = 1, 1/2 · (3/2 − 1/2) = 1/2
+/// and 2 · 1/4 = 1/2.
 ///
 /// ```
 /// use immaculate::number::Rational;

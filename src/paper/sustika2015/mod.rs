@@ -1,9 +1,10 @@
 //! Sustika and Suryana 2015: IMM filters of a coastal radar, with converted measurements or with unscented points.
 //!
-//! After this folder the reader knows where each equation of the paper is in the code, its simulations with everything that they leave open,
-//! and what becomes of its claims ([`claims`]).
+//! After this folder the reader knows where each equation of the paper is in the code, its simulations with everything that they leave
+//! open, and what becomes of its claims ([`claims`]).
 //!
-//! The paper in its own order, section by section. Its formulas are lost in the available copy and are put together again from what is left:
+//! The paper in its own order, section by section. Its formulas are lost in the available copy and are put together again from what is
+//! left:
 //!
 //! - 2.1 model, (1)-(4): [`wiener`](crate::model::wiener), [`Measurement::of`](crate::model::Measurement::of),
 //!   [`Problem`](crate::imm::Problem)
