@@ -81,7 +81,7 @@ impl<T: Field, const N: usize, const M: usize> Riccati<T, N, M> {
 
     /// The gain at a predicted covariance, K = P Hᵀ (H P Hᵀ + R)⁻¹ — derbez2000 (2), (4).
     ///
-    /// Example: the same filter as above.
+    /// Example: constant velocity at the predicted covariance of the example of [`Riccati::next`]; the process noise plays no part.
     ///
     /// ```
     /// use immaculate::number::{Field, Rational};
@@ -111,7 +111,7 @@ impl<T: Field, const N: usize, const M: usize> Riccati<T, N, M> {
     ///
     /// Source: derbez2000, section 2.2, the definition of A₊ below (7).
     ///
-    /// Example: the same filter as above.
+    /// Example: constant velocity with the gain of the example of [`Riccati::gain`].
     ///
     /// ```
     /// use immaculate::number::{Field, Rational};
