@@ -5,6 +5,7 @@
 
 use immaculate::oracle::case;
 use immaculate::oracle::variant::{Kind, catalogue};
+use immaculate::paper::Paper;
 use std::process::Command;
 
 #[test]
@@ -64,5 +65,30 @@ fn the_numbers_of_cases_and_variants_in_the_readme_are_those_of_the_catalogues()
         format!("Of {} mistakes and conventions", mistakes + conventions),
     ] {
         assert!(readme.contains(&sentence), "the README does not say: {sentence}");
+    }
+}
+
+#[test]
+fn every_finding_of_the_readme_rests_on_a_claim_or_an_erratum() {
+    let readme = include_str!("../README.md");
+    let section = readme.split("## What we found in the papers").nth(1).unwrap();
+    let section = section.split("\n## ").next().unwrap();
+    let specifications = Paper::ALL.map(Paper::specification);
+    let exists = |id: &str| {
+        specifications.iter().any(|specification| {
+            let mut equations = specification.equations.iter().chain(&specification.unnumbered);
+            specification.claims.iter().any(|claim| claim.id == id)
+                || equations.any(|equation| equation.erratum.as_ref().is_some_and(|erratum| erratum.id == id))
+        })
+    };
+    let rows: Vec<&str> = section.lines().filter(|line| line.starts_with("| ")).skip(1).collect();
+    assert!((12..=16).contains(&rows.len()), "a short table: {} rows", rows.len());
+    for row in rows {
+        let ground = row.split('|').nth(3).unwrap();
+        let ids: Vec<&str> = ground.split('`').skip(1).step_by(2).collect();
+        assert!(!ids.is_empty(), "it rests on nothing: {row}");
+        for id in ids {
+            assert!(exists(id), "no claim and no erratum: {id}");
+        }
     }
 }

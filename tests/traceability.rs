@@ -244,6 +244,61 @@ fn every_public_equation_names_its_number_or_its_source() {
     }
 }
 
+/// The rooms in which every equation and every function with a source has an example that is run.
+const ROOMS_WITH_EXAMPLES: [&str; 5] = [
+    "src/rule/",
+    "src/steady/",
+    "src/statistics/",
+    "src/paper/",
+    "src/oracle/",
+];
+
+#[test]
+fn every_public_equation_has_an_example_that_is_run() {
+    let mut wrong = Vec::new();
+    let has_examples = |path: &str| ROOMS_WITH_EXAMPLES.iter().any(|room| path.starts_with(room));
+    for file in sources().iter().filter(|file| has_examples(&file.path)) {
+        for function in public_functions(&file.text) {
+            let sourced = function.doc.lines().any(|line| line.starts_with("Source:"));
+            if (sourced || !headings(&function.doc).is_empty()) && !has_example_in_its_place(&function.doc) {
+                wrong.push(format!("{}: {}", file.path, function.name));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "no example, or not in its place: {wrong:#?}");
+    assert!(has_example_in_its_place(
+        "Example: one.\n```\nassert!(true);\n```\nEvidence: `law`."
+    ));
+    assert!(!has_example_in_its_place(
+        "Example: one.\n```text\nassert!(true);\n```\nEvidence: `law`."
+    ));
+    assert!(
+        !has_example_in_its_place("Example: one.\n```\nlet a = 1;\n```"),
+        "it states nothing"
+    );
+    assert!(!has_example_in_its_place(
+        "Evidence: `law`.\nExample: one.\n```\nassert!(true);\n```"
+    ));
+}
+
+/// Whether a doc comment has a block of code that is run and asserts something, before its errors, errata and evidence.
+fn has_example_in_its_place(doc: &str) -> bool {
+    let mut blocks = doc.split("```");
+    let mut before = blocks.next().unwrap_or_default().to_owned();
+    while let (Some(block), after) = (blocks.next(), blocks.next()) {
+        if block.starts_with('\n') {
+            let early = ["# Errors", "# Panics", "Errata:", "Evidence:"];
+            let has_label = before.lines().any(|line| line.starts_with("Example: "));
+            let is_late = before
+                .lines()
+                .any(|line| early.iter().any(|word| line.starts_with(word)));
+            return block.contains("assert") && has_label && !is_late;
+        }
+        before.push_str(after.unwrap_or_default());
+    }
+    false
+}
+
 // Scenarios
 
 #[test]

@@ -1,7 +1,7 @@
 //! Doc comments of equations, split into their fixed parts.
 //!
-//! After this file the reader knows the order in which an equation is documented: name and numbers; formula; dictionary; why; errors;
-//! errata; evidence.
+//! After this file the reader knows the order in which an equation is documented: name and numbers; formula; dictionary; why; example;
+//! errors; errata; evidence.
 
 use super::reference::{Reference, heading, headings};
 
@@ -60,12 +60,13 @@ pub struct Named {
 }
 
 /// The words with which parts begin, and the headings under which they stand.
-const LABELS: [(&str, PartKind); 9] = [
+const LABELS: [(&str, PartKind); 10] = [
     ("Why:", PartKind::Derivation),
     ("Source:", PartKind::Source),
     ("Errata:", PartKind::Errata),
     ("Mistakes:", PartKind::Mistakes),
     ("Evidence:", PartKind::Evidence),
+    ("Example:", PartKind::Example),
     ("# Errors", PartKind::Errors),
     ("# Panics", PartKind::Errors),
     ("# Examples", PartKind::Example),
@@ -81,13 +82,14 @@ impl Doc {
             Some((title, rest)) if !heading(rest).0.is_empty() => (title, heading(rest).1),
             _ => (first.as_str(), ""),
         };
-        let mut parts = Vec::new();
+        let mut parts: Vec<Part> = Vec::new();
         // What stands under a heading belongs to it, up to the next paragraph that begins with a word of its own.
         let mut under = None;
         for block in blocks {
             let label = LABELS.iter().find(|(word, _)| block.starts_with(word));
             if let Some((word, kind)) = label {
-                under = word.starts_with('#').then_some(*kind);
+                // The code of an example belongs to its sentence.
+                under = (word.starts_with('#') || *kind == PartKind::Example).then_some(*kind);
                 let text = block[word.len()..].trim();
                 if !text.is_empty() {
                     parts.push(Part {
@@ -97,13 +99,21 @@ impl Doc {
                 }
                 continue;
             }
-            parts.push(under.map_or_else(
+            let part = under.map_or_else(
                 || unlabelled(&block),
                 |kind| Part {
                     kind,
                     text: block.clone(),
                 },
-            ));
+            );
+            match parts.last_mut() {
+                // The sentence of an example and its code are one part.
+                Some(last) if last.kind == PartKind::Example && part.kind == PartKind::Example => {
+                    last.text.push_str("\n\n");
+                    last.text.push_str(&part.text);
+                }
+                _ => parts.push(part),
+            }
         }
         Self {
             title: title.trim().to_owned(),

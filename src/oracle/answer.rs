@@ -18,6 +18,18 @@ pub enum Message {
 }
 
 /// The answer of a subject to a line.
+///
+/// Example: one line in, one line out; here this crate's own filter answers.
+///
+/// ```
+/// use immaculate::oracle::answer::{Message, respond};
+/// use immaculate::oracle::subject::{Level, Planted};
+///
+/// let mut filter = Planted { variants: vec![], level: Level::Everything };
+/// let Message::Reply(line) = respond(&mut filter, r#"{ "type": "start" }"#) else { panic!("it introduces itself") };
+/// assert!(line.contains(r#""type":"ready""#) && line.contains(r#""precision":"double""#));
+/// assert_eq!(respond(&mut filter, r#"{ "type": "stop" }"#), Message::Stop);
+/// ```
 pub fn respond(subject: &mut dyn Subject, line: &str) -> Message {
     let message: Value = match serde_json::from_str(line) {
         Ok(message) => message,

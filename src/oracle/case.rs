@@ -56,6 +56,14 @@ pub fn trace_name(id: &str) -> String {
 }
 
 /// The SHA-256 digest of a text, in hexadecimal digits.
+///
+/// Example: the digest of nothing, as FIPS 180 has it.
+///
+/// ```
+/// use immaculate::oracle::case::digest;
+///
+/// assert!(digest("").starts_with("e3b0c442"));
+/// ```
 pub fn digest(text: &str) -> String {
     let mut digits = String::new();
     for byte in Sha256::digest(text.as_bytes()) {
@@ -140,6 +148,15 @@ pub enum BadCase {
 }
 
 /// All published cases that were not withdrawn, in the order of the lock.
+///
+/// Example: one is found by its id.
+///
+/// ```
+/// use immaculate::oracle::case;
+///
+/// let cases = case::all().unwrap();
+/// assert!(cases.iter().any(|case| case.problem.id == "step.n4-m2.two-modes"));
+/// ```
 ///
 /// # Errors
 ///
@@ -285,6 +302,16 @@ pub fn trace_text(id: &str, certified: &Certified) -> String {
 
 impl Case {
     /// Proves the case again from nothing but its problem; the bits that it took.
+    ///
+    /// Example: certified again, on enclosures: the same doubles, or an error.
+    ///
+    /// ```
+    /// use immaculate::oracle::case;
+    ///
+    /// let case = case::all().unwrap().iter().find(|case| case.problem.id == "step.n4-m2.two-modes").unwrap();
+    /// let certified = case.verify().unwrap().unwrap();
+    /// assert!(certified.digits > 16); // more digits than a double has
+    /// ```
     ///
     /// # Errors
     ///

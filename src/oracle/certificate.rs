@@ -114,6 +114,16 @@ pub enum InvalidCertificate {
 
 /// A fraction p/q or a decimal.
 ///
+/// Example: the same number twice, and a fraction in other terms.
+///
+/// ```
+/// use immaculate::number::Rational;
+/// use immaculate::oracle::certificate::read_number;
+///
+/// assert_eq!(read_number("radius", "-3/2"), read_number("radius", "-1.5"));
+/// assert_eq!(read_number("radius", "6/4"), Ok(Rational::new(3, 2)));
+/// ```
+///
 /// # Errors
 ///
 /// [`InvalidCertificate::Number`] for anything else.

@@ -59,6 +59,19 @@ pub struct Certified {
 
 /// Certifies a problem's trace, with more and more bits.
 ///
+/// Example: A published problem; c₀ = Σᵢ pᵢ₀ μᵢ of step 1 by hand, from the numbers of the file.
+///
+/// ```
+/// use immaculate::imm::Quantity;
+/// use immaculate::oracle::{case, certify::certify};
+///
+/// let case = case::all().unwrap().iter().find(|case| case.problem.id == "step.n4-m2.two-modes").unwrap();
+/// let certified = certify(&case.problem).unwrap();
+/// let c = certified.trace.get(1, Quantity::PredictedModeProbabilities, 0).unwrap();
+/// let (p, mu) = (&case.problem.transition, &case.problem.initial.mode_probabilities);
+/// assert_eq!(c[0], p[0][0] * mu[0] + p[1][0] * mu[1]);
+/// ```
+///
 /// # Errors
 ///
 /// [`NotCertified`] when the problem is wrong or the most bits are not enough.

@@ -238,6 +238,26 @@ fn declared(ready: &Ready) -> Result<Vec<&'static str>, NotMade> {
 
 /// Checks a program on the selected cases; `progress` is told of each case that is done.
 ///
+/// Example: this crate's own filter, with a mistake in it that is to be found: the spread of the means is left out.
+///
+/// ```
+/// use immaculate::imm::Quantity;
+/// use immaculate::oracle::check::{Selection, check};
+/// use immaculate::oracle::diagnose::Diagnosis;
+/// use immaculate::oracle::subject::{Level, Planted};
+///
+/// let mut program = Planted { variants: vec!["mixed-spread-omitted".into()], level: Level::Everything };
+/// let case = Selection { ids: vec!["step.n4-m2.two-modes".into()], ..Selection::default() };
+/// let report = check(&mut program, &case, &|_| {}).unwrap();
+///
+/// // Where: the mixed covariance of mode 0 at step 1.
+/// let (_, judged) = report.faults().next().unwrap();
+/// assert_eq!(judged.place, (1, Quantity::MixedCovariance, 0));
+/// // What:
+/// let Diagnosis::One(variants) = report.diagnosis else { panic!("one mistake explains all") };
+/// assert_eq!(variants[0].id, "mixed-spread-omitted");
+/// ```
+///
 /// # Errors
 ///
 /// [`NotMade`] when the check cannot be made.

@@ -9,12 +9,49 @@
 //!                                          └─▶ run along its own values ─┘        └─ variants
 //! ```
 //!
-//! - [`problem`] and its checks, [`trace`], [`csv`], [`schema`], [`invalid`]: the file formats;
-//! - [`shape`], [`setup`], [`run`]: from a file to a run in any number system, by itself or along another program's values;
-//! - [`certify`], [`noise`], [`scale`]: the exact values, how far rounding moves them, and in which unit an error is large;
-//! - [`case`]: the published cases; [`certificate`]: certificates of joint stability as files;
-//! - [`subject`], [`process`], [`folder`]: the program under test; [`answer`]: the other side of the protocol;
-//! - [`judge`]: one case; [`variant`]: the catalogue of what can be done otherwise; [`diagnose`]: what was done; [`check`]: all cases.
+//! # How a case is made
+//!
+//! A [`problem`] is a file of short decimals, checked before it is run; [`published`] holds all that there are, with what each is for.
+//! [`setup`] puts its numbers into any number system, [`shape`] its dimensions into types, and [`run`] runs it there: by itself, or along
+//! another program's values. [`trace`] is what comes out, under the names of the file format; [`csv`] says the same in a long table,
+//! [`schema`] describes the files, and [`invalid`] has the sentence for each file that is refused.
+//!
+//! # How it is certified
+//!
+//! [`certify`] runs the problem on enclosures, with more and more bits, until one double is the nearest to all that each enclosure holds.
+//! Beside each value stand its unit, [`scale`], and how far rounding alone moves it, [`noise`]. [`case`](mod@case) keeps the files and the
+//! lock of their digests: a published case never changes. ([`certificate`] is another thing: proofs of joint stability as files.)
+//!
+//! # How a program is asked
+//!
+//! [`subject`] has the trait that a program under test is seen by. A filter in Rust implements it; [`process`] is one in any other
+//! language, started once and spoken to in JSON lines; [`folder`] reads answers that were written to files; [`answer`] is the other side
+//! of the protocol.
+//!
+//! # How it is judged
+//!
+//! [`judge`] compares each shown value with the certified one and, if it is off, with its own equation on the program's own earlier
+//! values: what these explain was inherited, and what they do not explain is a fault. [`variant`] is the catalogue of what can be done
+//! otherwise, and [`diagnose`] finds which of it was done. [`check`](mod@check) does all of this over all cases:
+//!
+//! ```
+//! use immaculate::oracle::check::{Selection, check};
+//! use immaculate::oracle::subject::{Level, Planted};
+//!
+//! // A program under test: this crate's own filter, which shows everything. Yours implements `Subject` instead.
+//! let mut program = Planted { variants: vec![], level: Level::Everything };
+//! let case = Selection { ids: vec!["step.n4-m2.two-modes".into()], ..Selection::default() };
+//! let report = check(&mut program, &case, &|_| {})?;
+//! assert!(!report.is_wrong());
+//!
+//! // The same filter with the transition matrix read by columns: the first equation that uses it is at fault.
+//! program.variants.push("transition-transposed".into());
+//! let report = check(&mut program, &case, &|_| {})?;
+//! let (_, judged) = report.faults().next().unwrap();
+//! assert_eq!(judged.place.1.name(), "predicted_mode_probabilities");
+//! println!("{}", immaculate::report::check::text(&report));
+//! # Ok::<(), immaculate::oracle::check::NotMade>(())
+//! ```
 
 pub mod answer;
 pub mod case;

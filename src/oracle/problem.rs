@@ -278,6 +278,19 @@ pub struct MeasurementAt {
 impl ProblemFile {
     /// Reads a problem from JSON and checks it.
     ///
+    /// Example: a published problem, and the same with a key misspelt.
+    ///
+    /// ```
+    /// use immaculate::oracle::{case, problem::ProblemFile};
+    ///
+    /// let case = case::all().unwrap().iter().find(|case| case.problem.id == "step.n4-m2.two-modes").unwrap();
+    /// let problem = ProblemFile::read(&case.problem_text).unwrap();
+    /// assert_eq!((problem.dimensions().n, problem.dimensions().m), (4, 2));
+    /// // What is wrong with a file is said in a sentence with the place.
+    /// let spoilt = case.problem_text.replacen("\"transition\"", "\"transitions\"", 1);
+    /// assert!(ProblemFile::read(&spoilt).unwrap_err().to_string().contains("transitions"));
+    /// ```
+    ///
     /// # Errors
     ///
     /// [`Invalid`] with the place inside the file.

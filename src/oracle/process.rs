@@ -61,6 +61,18 @@ enum Line {
 impl Process {
     /// A process from a command and its arguments, with a time limit for each answer. To start it has twenty seconds more: an
     /// interpreter may take a while.
+    ///
+    /// Example: A command that is not there is a reason in words.
+    ///
+    /// ```
+    /// use immaculate::oracle::check::{Selection, check};
+    /// use immaculate::oracle::process::Process;
+    /// use std::time::Duration;
+    ///
+    /// let mut program = Process::new(vec!["no-such-filter".into()], Duration::from_secs(1));
+    /// let reason = check(&mut program, &Selection::default(), &|_| {}).unwrap_err().to_string();
+    /// assert!(reason.starts_with("`no-such-filter` cannot be started"));
+    /// ```
     pub fn new(command: Vec<String>, limit: Duration) -> Self {
         Self {
             command,

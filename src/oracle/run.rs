@@ -148,6 +148,19 @@ fn resume<T: Real, const N: usize, const M: usize>(
 
 /// Runs a problem in doubles; the trace, and why it stopped before the end if it did.
 ///
+/// Example: the plain filter, beside the certified trace: every step is computed, and the digits of a double are nearly all right.
+///
+/// ```
+/// use immaculate::oracle::case::{self, Expected};
+/// use immaculate::oracle::run::run_in_doubles;
+///
+/// let case = case::all().unwrap().iter().find(|case| case.problem.id == "step.n4-m2.two-modes").unwrap();
+/// let (trace, stopped) = run_in_doubles(&case.problem).unwrap();
+/// assert_eq!(stopped, None);
+/// let Expected::Trace(certified) = &case.expected else { panic!("it is no rejection") };
+/// assert_eq!(trace.count(), certified.count());
+/// ```
+///
 /// # Errors
 ///
 /// [`Invalid`] for a problem that cannot be set up.

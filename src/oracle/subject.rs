@@ -249,6 +249,38 @@ pub enum Broken {
 }
 
 /// A filter under test.
+///
+/// Example: the smallest program under test, which shows one quantity and is judged by it.
+///
+/// ```
+/// use immaculate::imm::Quantity;
+/// use immaculate::oracle::check::{Selection, check};
+/// use immaculate::oracle::problem::ProblemFile;
+/// use immaculate::oracle::subject::{Answer, Broken, Ready, Subject};
+/// use immaculate::oracle::trace::Trace;
+///
+/// /// The smallest program under test: it shows cⱼ = Σᵢ pᵢⱼ μᵢ of step 1 and nothing else.
+/// struct ChainAlone;
+///
+/// impl Subject for ChainAlone {
+///     fn start(&mut self) -> Result<Ready, Broken> {
+///         Ok(Ready { name: "the chain alone".into(), ..Ready::default() })
+///     }
+///
+///     fn run(&mut self, problem: &ProblemFile) -> Answer {
+///         let before = &problem.initial.mode_probabilities;
+///         let into = |j: usize| problem.transition.iter().zip(before).map(|(row, mu)| row[j] * mu).sum();
+///         let mut trace = Trace::empty(problem.dimensions());
+///         trace.set(1, Quantity::PredictedModeProbabilities, 0, (0..before.len()).map(into).collect());
+///         Answer::Steps { trace, error: None }
+///     }
+/// }
+///
+/// let case = Selection { ids: vec!["step.n4-m2.two-modes".into()], ..Selection::default() };
+/// let report = check(&mut ChainAlone, &case, &|_| {}).unwrap();
+/// assert!(!report.is_wrong());
+/// assert_eq!((report.cases[0].judged, report.cases[0].of), (1, 32)); // right in what it shows, silent on the rest
+/// ```
 pub trait Subject {
     /// Introduces itself.
     ///

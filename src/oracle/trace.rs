@@ -187,6 +187,19 @@ impl Trace {
 
     /// Reads the list of steps of a trace or an answer, with patience. What is not finite becomes NaN.
     ///
+    /// Example: one mode, one state, one measurement: a 1 × 1 matrix may come as a number, a list of one mode as an object.
+    ///
+    /// ```
+    /// use immaculate::imm::Quantity;
+    /// use immaculate::oracle::trace::{Dimensions, Trace};
+    /// use serde_json::json;
+    ///
+    /// let dimensions = Dimensions { n: 1, m: 1, r: 1, steps: 1 };
+    /// let steps = json!([{ "step": 1, "modes": { "gain": 0.75 } }]);
+    /// let trace = Trace::from_json(&steps, dimensions).unwrap();
+    /// assert_eq!(trace.get(1, Quantity::Gain, 0), Some(&vec![0.75]));
+    /// ```
+    ///
     /// # Errors
     ///
     /// [`Invalid`] with the place, for a key that does not exist, a step that does not exist or comes twice, and a wrong count of numbers.

@@ -1,6 +1,7 @@
 //! A scenario and its runs, for judges that ask about several scenarios.
 //!
-//! After this file the reader knows how a judge gets the runs that it asks for.
+//! After this file the reader knows how a judge gets the runs that it asks for: a scenario is run once, and every question about it is
+//! answered from the same runs, so that two answers can be compared.
 
 use super::Effort;
 use super::monte_carlo::{Progress, Run, run};

@@ -1,8 +1,10 @@
 //! The papers: their scenarios, their published tables, their claims.
 //!
 //! After this folder the reader knows what each paper reports, what its own equations give under its own parameters, and under each
-//! choice that it leaves open. The folders follow their papers; this level holds what they share.
+//! choice that it leaves open. The folders follow their papers, and each begins with a guide from the paper's sections to the code; this
+//! level holds what they share.
 //!
+//! - [`zhu2016`], [`liu2017`], [`derbez2000`], [`sustika2015`]: the papers;
 //! - [`specification`]: the papers' equations, tables, open parameters and claims, from the files in `spec/`;
 //! - [`simulation`]: what can be run, and what the statistics ask about it;
 //! - [`scenario`]: a target that flies straight and turns, seen by a sensor, and the filters that compete on it;
@@ -10,6 +12,17 @@
 //! - [`result`]: what the runs show;
 //! - [`experiment`]: a scenario together with its runs;
 //! - [`verdict`]: how a claim is judged.
+//!
+//! ```
+//! use immaculate::paper::Paper;
+//!
+//! // Everything that a paper prints is there as data: here its (13), which is wrong, with the reason.
+//! let specification = "zhu2016".parse::<Paper>()?.specification();
+//! let weight = specification.equations.iter().find(|equation| equation.number == Some(13)).unwrap();
+//! assert_eq!(weight.status, "corrected");
+//! assert!(weight.erratum.as_ref().unwrap().printed.contains(r"\frac{2}{(n+2)^2}"));
+//! # Ok::<(), String>(())
+//! ```
 
 pub mod derbez2000;
 pub mod experiment;
@@ -128,6 +141,19 @@ impl Paper {
     }
 
     /// Runs the paper's simulation.
+    ///
+    /// Example: zhu2016 is linear, so two of its filters are one: the same errors but for rounding, in two runs as in a hundred.
+    ///
+    /// ```
+    /// use immaculate::paper::result::Quantity;
+    /// use immaculate::paper::specification::Choices;
+    /// use immaculate::paper::{Effort, Paper};
+    ///
+    /// let effort = Effort { runs: Some(2), seed: 1 };
+    /// let result = Paper::Zhu2016.reproduce(&Choices::default(), effort, &|| {}).unwrap();
+    /// let error = |filter| result.error(filter, Quantity::X).unwrap().value;
+    /// assert!((error("IMM5CKF") - error("IMMCKF")).abs() < 1e-9); // 10⁻¹⁰ m is the greatest difference of any estimate
+    /// ```
     ///
     /// # Errors
     ///

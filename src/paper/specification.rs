@@ -260,6 +260,15 @@ impl Choices {
 
     /// Choices from texts of the form `parameter=alternative`.
     ///
+    /// Example: as `--set` has it on the command line.
+    ///
+    /// ```
+    /// use immaculate::paper::specification::Choices;
+    ///
+    /// let choices = Choices::parse(&["measurement=range-bearing".into()]).unwrap();
+    /// assert_eq!(choices.chosen("measurement"), Some("range-bearing"));
+    /// ```
+    ///
     /// # Errors
     ///
     /// [`InvalidChoice::Form`] for a text without `=`.

@@ -59,6 +59,18 @@ pub struct Judgement {
 pub const DECISIVE: f64 = 4.0;
 
 /// Whether a difference is below zero, above it, or neither with certainty.
+///
+/// Example: ten standard errors below zero, and half of one above.
+///
+/// ```
+/// use immaculate::paper::verdict::sign_of;
+/// use immaculate::statistics::Estimate;
+/// use std::cmp::Ordering;
+///
+/// let difference = |value| Estimate { value, standard_error: 1.0 };
+/// assert_eq!(sign_of(difference(-10.0)), Some(Ordering::Less));
+/// assert_eq!(sign_of(difference(0.5)), None); // within its own uncertainty
+/// ```
 pub fn sign_of(difference: Estimate) -> Option<Ordering> {
     let distance = difference.distance_from(0.0);
     if distance <= -DECISIVE {

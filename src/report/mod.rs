@@ -2,6 +2,13 @@
 //!
 //! After this folder the reader knows how each command's answer looks. The same answers are written as JSON by serialising the values
 //! themselves; nothing is computed here.
+//!
+//! - [`rule`]: points and weights; [`trace`]: a run step by step; [`cases`], [`variants`], [`claims`]: the lists of what there is;
+//! - [`reproduction`], [`figure`], [`long_term`], [`fit_error`], [`divergence`]: the papers' tables and figures, published and computed;
+//! - [`conversion`]: where a converted measurement can be trusted;
+//! - [`stability`], [`stability_map`]: two fixed-gain filters, and all pairs of them;
+//! - [`check`], [`check_json`]: the verdict on a program under test;
+//! - [`page`]: all of the papers' results in one file.
 
 pub mod cases;
 pub mod chart;

@@ -1,6 +1,7 @@
 //! A trace for people: step by step, every value under its name, with the equations that give it.
 //!
-//! After this file the reader knows how a step is printed, with the equations of each value.
+//! After this file the reader knows how a step is printed: in the order of the cycle, each value under the name of the file format and with
+//! the printed numbers of its equation, so that a paper can be read beside it.
 
 use super::wrapped;
 use crate::imm::Quantity;

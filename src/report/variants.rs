@@ -1,6 +1,7 @@
 //! The catalogue of variants for people.
 //!
-//! After this file the reader knows how a variant is printed, in a line and in full.
+//! After this file the reader knows how a variant is printed: in a line with its kind and equation, and in full with what it does, where
+//! it was found and which case catches it.
 
 use super::{never_broken, table, wrapped};
 use crate::oracle::variant::{Kind, Variant};

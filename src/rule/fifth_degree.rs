@@ -25,19 +25,25 @@ use num_traits::Zero;
 /// Why: the axes and the diagonals together integrate every polynomial of degree five over the sphere (Stroud's Uₙ 5-1), and
 /// the centre with the radius √(n+2) gets the radial moments E r² = n and E r⁴ = n(n + 2) right.
 ///
+/// Example: for n = 2: the centre, 4 points on the axes, 4 on the diagonals, at the distance √4.
+///
+/// ```
+/// use immaculate::number::{Rational, Surd};
+/// use immaculate::rule::fifth_degree::fifth_degree;
+///
+/// let rule = fifth_degree(2).unwrap();
+/// let root = Surd::root(&Rational::new(2, 1));
+/// assert_eq!(rule.points[1], [Surd::root(&Rational::new(4, 1)), Surd::root(&Rational::new(0, 1))]); // (2, 0)
+/// assert_eq!(rule.points[5], [root.clone(), root]); // 2 · √½ (1, 1)
+/// // 1/2 + 4 · 1/16 + 4 · 1/16
+/// assert_eq!(rule.sum_of_weights(), Rational::new(1, 1));
+/// ```
+///
 /// Errata: the index i of the centre point in (2) is superfluous (notational).
 ///
 /// # Errors
 ///
 /// [`InvalidRule::Dimension`] in dimension zero.
-///
-/// # Examples
-///
-/// ```
-/// let rule = immaculate::rule::fifth_degree::fifth_degree(4).unwrap();
-/// assert_eq!(rule.points.len(), 33);
-/// assert_eq!(rule.points[1][0].to_string(), "√6");
-/// ```
 ///
 /// Evidence: `fifth_degree_rule_is_exact_to_degree_five_and_not_six` (exact, n = 1…10),
 /// `fifth_degree_rule_has_degree_five_in_every_dimension` (symbolic).
@@ -92,6 +98,17 @@ pub(super) fn with_weights(
 ///
 /// The pairs (j, l) come in lexicographic order; sums over the points do not depend on it.
 ///
+/// Example: n = 2 has one pair (1, 2), n = 3 has three: (1, 2), (1, 3), (2, 3).
+///
+/// ```
+/// use immaculate::number::{Rational, Surd};
+/// use immaculate::rule::fifth_degree::diagonals_plus;
+///
+/// let half = Surd::root(&Rational::new(1, 2));
+/// assert_eq!(diagonals_plus(2), [[half.clone(), half]]);
+/// assert_eq!(diagonals_plus(3).len(), 3);
+/// ```
+///
 /// Evidence: as [`fifth_degree`].
 pub fn diagonals_plus(n: usize) -> Vec<Vec<Surd>> {
     diagonals(n, &Surd::root(&Rational::new(1, 2)))
@@ -101,6 +118,16 @@ pub fn diagonals_plus(n: usize) -> Vec<Vec<Surd>> {
 ///
 /// ```text
 /// s⁻ = √½ (eⱼ − eₗ),   j < l
+/// ```
+///
+/// Example: for n = 2, √½ (1, −1).
+///
+/// ```
+/// use immaculate::number::{Rational, Surd};
+/// use immaculate::rule::fifth_degree::diagonals_minus;
+///
+/// let half = Surd::root(&Rational::new(1, 2));
+/// assert_eq!(diagonals_minus(2), [[half.clone(), -half]]);
 /// ```
 ///
 /// Evidence: as [`fifth_degree`].
@@ -138,6 +165,16 @@ fn scaled(points: &[Vec<Surd>], radius: &Surd) -> Vec<Vec<Surd>> {
 ///
 /// Why: the radial rule. With weight W on the sphere of radius √(n+2), E r² = n asks for W = n/(n + 2); the centre has the rest.
 ///
+/// Example: 2/(2 + 2) and 2/(4 + 2).
+///
+/// ```
+/// use immaculate::number::Rational;
+/// use immaculate::rule::fifth_degree::centre_weight;
+///
+/// assert_eq!(centre_weight(&Rational::new(2, 1)), Rational::new(1, 2));
+/// assert_eq!(centre_weight(&Rational::new(4, 1)), Rational::new(1, 3));
+/// ```
+///
 /// Evidence: as [`fifth_degree`].
 pub fn centre_weight<T: Field>(n: &T) -> T {
     T::integer(2) / (n.clone() + T::integer(2))
@@ -148,6 +185,17 @@ pub fn centre_weight<T: Field>(n: &T) -> T {
 /// Why: Stroud's weight (4 − n)/(2n(n + 2)) on the unit sphere, times n/(n + 2) of the radial rule. Positive for n < 4, zero at
 /// n = 4 (8 of the 33 points then count for nothing), negative for n > 4.
 ///
+/// Example: (4 − 2)/(2 · 16), (4 − 4)/(2 · 36), (4 − 5)/(2 · 49).
+///
+/// ```
+/// use immaculate::number::Rational;
+/// use immaculate::rule::fifth_degree::axis_weight;
+///
+/// assert_eq!(axis_weight(&Rational::new(2, 1)), Rational::new(1, 16));
+/// assert_eq!(axis_weight(&Rational::new(4, 1)), Rational::new(0, 1));
+/// assert_eq!(axis_weight(&Rational::new(5, 1)), Rational::new(-1, 98));
+/// ```
+///
 /// Evidence: as [`fifth_degree`], `signs_of_the_weights_are_as_documented` (exact).
 pub fn axis_weight<T: Field>(n: &T) -> T {
     let n_plus_2 = n.clone() + T::integer(2);
@@ -157,6 +205,21 @@ pub fn axis_weight<T: Field>(n: &T) -> T {
 /// Weight of each of the 2n(n − 1) points on the diagonals — zhu2016 (13): w₂ = 1/(n + 2)².
 ///
 /// Why: Stroud's weight 1/(n(n + 2)) on the unit sphere, times n/(n + 2) of the radial rule.
+///
+/// Example: for n = 4: 1 centre, 8 points on the axes, 24 on the diagonals.
+///
+/// ```
+/// use immaculate::number::{Field, Rational};
+/// use immaculate::rule::fifth_degree::{axis_weight, centre_weight, diagonal_weight};
+/// use immaculate::rule::printed;
+///
+/// let n = Rational::new(4, 1);
+/// let sum = |w2: Rational| centre_weight(&n) + Rational::integer(8) * axis_weight(&n) + Rational::integer(24) * w2;
+/// // 1/3 + 8 · 0 + 24 · 1/36
+/// assert_eq!(sum(diagonal_weight(&n)), Rational::new(1, 1));
+/// // As printed: 1/3 + 8 · 0 + 24 · 2/36
+/// assert_eq!(sum(printed::diagonal_weight(&n)), Rational::new(5, 3));
+/// ```
 ///
 /// Errata: the paper prints 2/(n + 2)², with which the weights sum to (3n² + 2n + 4)/(n + 2)², that is 5/3 at n = 4, and a
 /// filter of the paper's scenario is off by a hundred metres after one step and has no covariance after two; see

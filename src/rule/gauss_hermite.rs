@@ -32,6 +32,17 @@ pub struct Node {
 /// Source: Abramowitz and Stegun 25.4.46, in the variable √2 x. The filter of this rule is the Gauss-Hermite Kalman filter of
 /// Ito and Xiong 2000.
 ///
+/// Example: for m = 3: 0 with 2/3, ±√3 with 1/6 each.
+///
+/// ```
+/// use immaculate::rule::gauss_hermite::nodes;
+///
+/// let nodes = nodes(3).unwrap();
+/// let [centre, right] = [&nodes[0], &nodes[1]];
+/// assert_eq!((centre.sign, centre.weight.to_string()), (0, "2/3".to_owned()));
+/// assert_eq!((right.square.to_string(), right.weight.to_string()), ("3".to_owned(), "1/6".to_owned()));
+/// ```
+///
 /// # Errors
 ///
 /// [`InvalidRule::Nodes`] for another number of nodes.
@@ -86,6 +97,17 @@ pub fn nodes(m: usize) -> Result<Vec<Node>, InvalidRule> {
 /// The rule's moment Σ w x^power in one coordinate, exactly.
 ///
 /// Source: the definition of a rule.
+///
+/// Example: for m = 3: E x⁴ = 2 · 1/6 · 9 = 3 is the Gaussian's; E x⁶ = 2 · 1/6 · 27 = 9, where the Gaussian has 15.
+///
+/// ```
+/// use immaculate::rule::gauss_hermite::{moment, nodes};
+///
+/// let nodes = nodes(3).unwrap();
+/// assert_eq!(moment(&nodes, 4).to_string(), "3");
+/// assert_eq!(moment(&nodes, 6).to_string(), "9");
+/// assert_eq!(moment(&nodes, 5).to_string(), "0");
+/// ```
 pub fn moment(nodes: &[Node], power: usize) -> Surd {
     let mut sum = Surd::zero();
     for node in nodes {
@@ -110,16 +132,20 @@ pub fn moment(nodes: &[Node], power: usize) -> Surd {
 ///
 /// Source: as [`nodes`].
 ///
+/// Example: two coordinates with 0 and ±√3 each: nine points, the first of them the centre with 2/3 · 2/3.
+///
+/// ```
+/// use immaculate::rule::gauss_hermite::gauss_hermite;
+///
+/// let rule = gauss_hermite::<f64, 2>(3).unwrap();
+/// assert_eq!(rule.points.len(), 9);
+/// assert_eq!(rule.points[0].as_slice(), [0.0, 0.0]);
+/// assert_eq!(rule.weights[0], 2.0 / 3.0 * (2.0 / 3.0));
+/// ```
+///
 /// # Errors
 ///
 /// [`InvalidRule::Nodes`] when m is not 2 to 5, [`InvalidRule::Dimension`] in dimension zero.
-///
-/// # Examples
-///
-/// ```
-/// let rule = immaculate::rule::gauss_hermite::gauss_hermite::<f64, 2>(3).unwrap();
-/// assert_eq!(rule.points.len(), 9);
-/// ```
 pub fn gauss_hermite<T: Real, const N: usize>(m: usize) -> Result<Rule<T, N>, InvalidRule> {
     if N == 0 {
         return Err(InvalidRule::Dimension {

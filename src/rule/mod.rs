@@ -26,6 +26,20 @@
 //! | weights that the papers print wrongly    |             | none   | [`printed`]       |
 //!
 //! (The unscented rule has degree 5 in one dimension when n + λ = 3.)
+//!
+//! ```
+//! use immaculate::number::{Field, Rational, Surd};
+//! use immaculate::rule::{moment::rule_moment, simplex::radial_rule, third_degree::third_degree};
+//!
+//! // n = 1: the integrals of x² and x⁴ are 1 and 3; the points ±1 with 1/2 each give 1 and 1.
+//! let rule = third_degree(1).unwrap();
+//! assert_eq!(rule_moment(&rule, &[2]), Surd::rational(&Rational::new(1, 1)));
+//! assert_eq!(rule_moment(&rule, &[4]), Surd::rational(&Rational::new(1, 1)));
+//!
+//! // n = 4: a radius squared of 4/2 + 1 in the variable of liu2017 is one of 4 + 2 here.
+//! let (_, _, squared) = radial_rule(&Rational::new(4, 1));
+//! assert_eq!(Rational::new(2, 1) * squared, Rational::new(6, 1));
+//! ```
 
 pub mod fifth_degree;
 pub mod gauss_hermite;
@@ -138,6 +152,15 @@ impl ExactRule {
     }
 
     /// Sum of the weights: the moment of degree zero, 1 for every rule that is right.
+    ///
+    /// Example: at n = 4, of the rule of zhu2016 as it is and as it is printed.
+    ///
+    /// ```
+    /// use immaculate::rule::{fifth_degree, printed};
+    ///
+    /// assert_eq!(fifth_degree::fifth_degree(4).unwrap().sum_of_weights().to_string(), "1");
+    /// assert_eq!(printed::fifth_degree(4).unwrap().sum_of_weights().to_string(), "5/3");
+    /// ```
     pub fn sum_of_weights(&self) -> Rational {
         self.weights
             .iter()
@@ -146,6 +169,15 @@ impl ExactRule {
     }
 
     /// Sum of the weights' absolute values, Σ|w|: the factor by which the rule can amplify an error of g.
+    ///
+    /// Example: for n = 4, κ = −1: weights −1/3 and eight times 1/6.
+    ///
+    /// ```
+    /// use immaculate::rule::unscented::{Parameters, unscented};
+    ///
+    /// let rule = unscented(4, &Parameters::for_gaussian(4)).unwrap();
+    /// assert_eq!(rule.sum_of_absolute_weights().to_string(), "5/3");
+    /// ```
     pub fn sum_of_absolute_weights(&self) -> Rational {
         self.weights
             .iter()
@@ -153,12 +185,30 @@ impl ExactRule {
     }
 
     /// The number of points whose weight is not zero.
+    ///
+    /// Example: for n = 4: the eight points on the axes have the weight 4 − n = 0.
+    ///
+    /// ```
+    /// use immaculate::rule::fifth_degree::fifth_degree;
+    ///
+    /// let rule = fifth_degree(4).unwrap();
+    /// assert_eq!((rule.points.len(), rule.effective_points()), (33, 25));
+    /// ```
     pub fn effective_points(&self) -> usize {
         let zero = Rational::new(0, 1);
         self.weights.iter().filter(|weight| **weight != zero).count()
     }
 
     /// The number of different places at which the points stand.
+    ///
+    /// Example: for n = 2: a triangle's edge midpoints are opposite to its vertices, so that 13 points stand at 7 places.
+    ///
+    /// ```
+    /// use immaculate::rule::simplex::simplex;
+    ///
+    /// let rule = simplex(2).unwrap();
+    /// assert_eq!((rule.points.len(), rule.distinct_points()), (13, 7));
+    /// ```
     pub fn distinct_points(&self) -> usize {
         (0..self.points.len())
             .filter(|&s| !self.points[..s].contains(&self.points[s]))
@@ -181,11 +231,7 @@ impl<T: Roots, const N: usize> Rule<T, N> {
     /// Turns an exact rule into the numbers of a filter, each coordinate and weight by itself: in doubles each is the one
     /// nearest to the exact value.
     ///
-    /// # Errors
-    ///
-    /// [`InvalidRule::StateDimension`] when the rule's dimension is not N.
-    ///
-    /// # Examples
+    /// Example: at n = 4 the third-degree rule has the radius √4 and the weights 1/8.
     ///
     /// ```
     /// use immaculate::rule::{Rule, third_degree::third_degree};
@@ -194,6 +240,10 @@ impl<T: Roots, const N: usize> Rule<T, N> {
     /// assert_eq!(rule.points[0][0], 2.0);
     /// assert_eq!(rule.weights, vec![0.125; 8]);
     /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`InvalidRule::StateDimension`] when the rule's dimension is not N.
     pub fn from_exact(exact: &ExactRule) -> Result<Self, InvalidRule> {
         if exact.dimension != N {
             return Err(InvalidRule::StateDimension {

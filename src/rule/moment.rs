@@ -33,7 +33,7 @@ impl std::fmt::Display for WrongMoment {
 
 /// The name of a monomial under an expectation: `E x1^2 x3`, or `E 1`.
 ///
-/// # Examples
+/// Example: exponents of zero are left out.
 ///
 /// ```
 /// use immaculate::rule::moment::monomial_name;
@@ -69,11 +69,12 @@ pub struct Exactness {
 ///
 /// Source: E x^(2k) = 1·3·5⋯(2k − 1) for a standard Gaussian coordinate, and the coordinates are independent.
 ///
-/// # Examples
+/// Example: E x⁴ = 3 and E x² = 1; odd ones are zero.
 ///
 /// ```
 /// use immaculate::rule::moment::gaussian_moment;
-/// assert_eq!(gaussian_moment(&[4, 2]).to_string(), "3");
+///
+/// assert_eq!(gaussian_moment(&[4, 2]).to_string(), "3"); // E x⁴ · E x² = 3 · 1
 /// assert_eq!(gaussian_moment(&[1, 2]).to_string(), "0");
 /// ```
 pub fn gaussian_moment(exponents: &[usize]) -> Rational {
@@ -92,6 +93,17 @@ pub fn gaussian_moment(exponents: &[usize]) -> Rational {
 /// The rule's moment of a monomial, Σₛ wₛ Πᵢ ξₛ,ᵢ^eᵢ.
 ///
 /// Source: the definition of a rule.
+///
+/// Example: four points (±√2, 0), (0, ±√2) with 1/4 each: E x₁² = 2 · 1/4 · 2, E x₁⁴ = 2 · 1/4 · 4, and E x₁²x₂² = 0 for 1.
+///
+/// ```
+/// use immaculate::rule::{moment::rule_moment, third_degree::third_degree};
+///
+/// let rule = third_degree(2).unwrap();
+/// assert_eq!(rule_moment(&rule, &[2, 0]).to_string(), "1");
+/// assert_eq!(rule_moment(&rule, &[4, 0]).to_string(), "2");
+/// assert_eq!(rule_moment(&rule, &[2, 2]).to_string(), "0");
+/// ```
 pub fn rule_moment(rule: &ExactRule, exponents: &[usize]) -> Surd {
     let mut sum = Surd::zero();
     for (point, weight) in rule.points.iter().zip(&rule.weights) {
@@ -110,7 +122,7 @@ pub fn rule_moment(rule: &ExactRule, exponents: &[usize]) -> Surd {
 ///
 /// Source: the definition of the degree of a rule.
 ///
-/// # Examples
+/// Example: four points at the distance √2 with 1/4 each, 2 · 1/4 · (√2)⁴ = 2.
 ///
 /// ```
 /// use immaculate::rule::{moment::exactness, third_degree::third_degree};
@@ -138,6 +150,17 @@ pub fn exactness(rule: &ExactRule, up_to: usize) -> Exactness {
 /// x₁⁴ before x₁²x₂².
 ///
 /// Source: the definition of the degree of a rule.
+///
+/// Example: for n = 2: the axes give E x₁⁶ 2 · 1/16 · 2⁶ = 8, the diagonals 4 · 1/16 · (√2)⁶ = 2.
+///
+/// ```
+/// use immaculate::rule::{fifth_degree::fifth_degree, moment::wrong_moment_of_degree};
+///
+/// let rule = fifth_degree(2).unwrap();
+/// assert_eq!(wrong_moment_of_degree(&rule, 4), None);
+/// let wrong = wrong_moment_of_degree(&rule, 6).unwrap();
+/// assert_eq!(wrong.to_string(), "E x1^6 = 10, where the Gaussian has 15");
+/// ```
 pub fn wrong_moment_of_degree(rule: &ExactRule, degree: usize) -> Option<WrongMoment> {
     let terms: Vec<Surd> = rule.weights.iter().map(Surd::rational).collect();
     search(rule, &mut vec![0; rule.dimension], 0, degree, &terms)

@@ -42,6 +42,17 @@ pub struct InnerProduct<T> {
 ///
 /// Source: Müller, Spherical Harmonics, 1966, recurrence of the Legendre polynomials in n dimensions. Even members are
 /// polynomials of t², and odd ones t times such a polynomial, so that no square root of an inner product is needed.
+///
+/// Example: on the circle, n = 2, P₂ₖ(cos θ) = cos 2kθ; at θ = 45°, where t² = 1/2, cos 90° = 0 and cos 180° = −1.
+///
+/// ```
+/// use immaculate::number::Rational;
+/// use immaculate::rule::sphere::gegenbauer;
+///
+/// let (n, half) = (Rational::new(2, 1), Rational::new(1, 2));
+/// assert_eq!(gegenbauer(&n, 1, &half), Rational::new(0, 1));
+/// assert_eq!(gegenbauer(&n, 2, &half), Rational::new(-1, 1));
+/// ```
 pub fn gegenbauer<T: Field>(n: &T, k: usize, squared: &T) -> T {
     let m = |value: usize| T::integer(i64::try_from(value).unwrap_or(i64::MAX));
     let step = |degree: usize| n.clone() + m(degree) - T::integer(2);
@@ -57,6 +68,19 @@ pub fn gegenbauer<T: Field>(n: &T, k: usize, squared: &T) -> T {
 /// The harmonic sum Σₛ Σₜ wₛ wₜ P₂ₖ(s·t): zero exactly when all harmonics of degree 2k are integrated exactly.
 ///
 /// Source: Delsarte, Goethals and Seidel, Spherical codes and designs, 1977, for equal weights; the head of this file for any.
+///
+/// Example: four points on the circle, ±e₁ and ±e₂, of 1/4 each. For k = 1 their pairs give 8/16 · 1 + 8/16 · (−1), for k = 2 8/16 · 1 +
+/// 8/16 · 1: the rule is right to degree 3 and not to 4.
+///
+/// ```
+/// use immaculate::number::Rational;
+/// use immaculate::rule::sphere::{harmonic_sum, on_axes};
+///
+/// let n = Rational::new(2, 1);
+/// let rule = on_axes(&n, Rational::new(0, 1), &Rational::new(1, 4), n.clone());
+/// assert_eq!(harmonic_sum(&n, 1, &rule.products), Rational::new(0, 1));
+/// assert_eq!(harmonic_sum(&n, 2, &rule.products), Rational::new(1, 1));
+/// ```
 pub fn harmonic_sum<T: Field>(n: &T, k: usize, products: &[InnerProduct<T>]) -> T {
     let mut sum = T::zero();
     for product in products {
@@ -69,6 +93,15 @@ pub fn harmonic_sum<T: Field>(n: &T, k: usize, products: &[InnerProduct<T>]) -> 
 /// Radial moment E r^(2k) of the standard Gaussian in n dimensions: n(n + 2) ⋯ (n + 2k − 2).
 ///
 /// Source: r² is χ² with n degrees of freedom.
+///
+/// Example: for n = 2, E r⁴.
+///
+/// ```
+/// use immaculate::number::Rational;
+/// use immaculate::rule::sphere::radial_moment;
+///
+/// assert_eq!(radial_moment(&Rational::new(2, 1), 2), Rational::new(8, 1)); // 2 · 4
+/// ```
 pub fn radial_moment<T: Field>(n: &T, k: usize) -> T {
     let mut product = T::one();
     for i in 0..k {
@@ -97,6 +130,18 @@ impl<T: Field> SphericalRule<T> {
     /// harmonic sum. `None` when the weights do not sum to one.
     ///
     /// Source: the head of this file.
+    ///
+    /// Example: the third-degree rule, with n left unknown: the radius squared is n, and there is no centre.
+    ///
+    /// ```
+    /// use immaculate::number::{Field, RationalFunction};
+    /// use immaculate::rule::sphere::{every_dimension, on_axes};
+    /// use immaculate::rule::third_degree::axis_weight;
+    ///
+    /// let n = every_dimension();
+    /// let rule = on_axes(&n, RationalFunction::integer(0), &axis_weight(&n), n.clone());
+    /// assert_eq!(rule.degree(), Some(3));
+    /// ```
     pub fn degree(&self) -> Option<usize> {
         if self.centre.clone() + self.sphere.clone() != T::one() {
             return None;
@@ -123,6 +168,19 @@ impl<T: Field> SphericalRule<T> {
 /// ```
 ///
 /// Source: counting.
+///
+/// Example: for n = 2: of 4 · 4 ordered pairs 8 are equal or opposite and 8 are at right angles.
+///
+/// ```
+/// use immaculate::number::Rational;
+/// use immaculate::rule::sphere::on_axes;
+///
+/// let n = Rational::new(2, 1);
+/// let rule = on_axes(&n, Rational::new(0, 1), &Rational::new(1, 4), n.clone());
+/// let pairs: Vec<String> = rule.products.iter().map(|pair| pair.pairs.to_string()).collect();
+/// assert_eq!(pairs, ["8", "8"]);
+/// assert_eq!(rule.degree(), Some(3));
+/// ```
 pub fn on_axes<T: Field>(n: &T, centre: T, axis_weight: &T, radius_squared: T) -> SphericalRule<T> {
     let two = T::integer(2);
     let points = two.clone() * n.clone();
@@ -159,6 +217,17 @@ pub fn on_axes<T: Field>(n: &T, centre: T, axis_weight: &T, radius_squared: T) -
 /// ```
 ///
 /// Source: counting.
+///
+/// Example: for every n ≥ 2 at once: zhu2016's rule has degree five, and with the printed weight not even its weights sum to one.
+///
+/// ```
+/// use immaculate::rule::sphere::{every_dimension, on_axes_and_diagonals};
+/// use immaculate::rule::{fifth_degree, printed};
+///
+/// let n = every_dimension();
+/// assert_eq!(on_axes_and_diagonals(&n, &fifth_degree::diagonal_weight(&n)).degree(), Some(5));
+/// assert_eq!(on_axes_and_diagonals(&n, &printed::diagonal_weight(&n)).degree(), None);
+/// ```
 pub fn on_axes_and_diagonals<T: Field>(n: &T, diagonal_weight: &T) -> SphericalRule<T> {
     let integer = T::integer;
     let axis_points = integer(2) * n.clone();
@@ -229,6 +298,18 @@ pub fn on_axes_and_diagonals<T: Field>(n: &T, diagonal_weight: &T) -> SphericalR
 /// ```
 ///
 /// Source: aᵢ·aₗ = −1/n, b = √(n/(2(n−1))) (aᵢ + aₗ), and counting.
+///
+/// Example: for every n ≥ 2 at once: liu2017's rule has degree five with the right weight of the midpoints, and none as printed.
+///
+/// ```
+/// use immaculate::rule::sphere::{every_dimension, on_simplex};
+/// use immaculate::rule::{printed, simplex};
+///
+/// let n = every_dimension();
+/// assert_eq!(on_simplex(&n, &simplex::edge_weight(&n)).degree(), Some(5));
+/// assert_eq!(on_simplex(&n, &printed::edge_weight_11(&n)).degree(), None);
+/// assert_eq!(on_simplex(&n, &printed::edge_weight_16(&n)).degree(), None);
+/// ```
 pub fn on_simplex<T: Field>(n: &T, edge_weight: &T) -> SphericalRule<T> {
     let integer = T::integer;
     let n_minus_1 = n.clone() - T::one();

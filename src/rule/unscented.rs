@@ -20,6 +20,16 @@ pub struct Parameters {
 
 impl Parameters {
     /// The original form with one parameter κ: α = 1, β = 0.
+    ///
+    /// Example: with α = 1, λ = n + κ − n = κ.
+    ///
+    /// ```
+    /// use immaculate::number::Rational;
+    /// use immaculate::rule::unscented::Parameters;
+    ///
+    /// let parameters = Parameters::of_kappa(Rational::new(1, 2));
+    /// assert_eq!(parameters.lambda(4), Rational::new(1, 2));
+    /// ```
     pub fn of_kappa(kappa: Rational) -> Self {
         Self {
             alpha: Rational::new(1, 1),
@@ -31,6 +41,16 @@ impl Parameters {
     /// κ = 3 − n, the value for Gaussian densities; negative for n > 3.
     ///
     /// Source: Julier and Uhlmann 2004.
+    ///
+    /// Example: for n = 2 and n = 4.
+    ///
+    /// ```
+    /// use immaculate::number::Rational;
+    /// use immaculate::rule::unscented::Parameters;
+    ///
+    /// assert_eq!(Parameters::for_gaussian(2).kappa, Rational::new(1, 1)); // 3 − 2
+    /// assert_eq!(Parameters::for_gaussian(4).kappa, Rational::new(-1, 1)); // 3 − 4
+    /// ```
     pub fn for_gaussian(n: usize) -> Self {
         Self::of_kappa(Rational::new(3, 1) - dimension_as_rational(n))
     }
@@ -38,6 +58,17 @@ impl Parameters {
     /// λ = α²(n + κ) − n.
     ///
     /// Source: Wan and van der Merwe, The unscented Kalman filter, 2001.
+    ///
+    /// Example: for n = 2, α = 1/2, κ = 1.
+    ///
+    /// ```
+    /// use immaculate::number::Rational;
+    /// use immaculate::rule::unscented::Parameters;
+    ///
+    /// let q = Rational::new;
+    /// let parameters = Parameters { alpha: q(1, 2), beta: q(2, 1), kappa: q(1, 1) };
+    /// assert_eq!(parameters.lambda(2), q(-5, 4)); // 1/4 · (2 + 1) − 2
+    /// ```
     pub fn lambda(&self, n: usize) -> Rational {
         lambda(&dimension_as_rational(n), &self.alpha, &self.kappa)
     }
@@ -46,6 +77,16 @@ impl Parameters {
 /// λ = α²(n + κ) − n.
 ///
 /// Source: Wan and van der Merwe, The unscented Kalman filter, 2001.
+///
+/// Example: for n = 2, α = 1/2, κ = 1.
+///
+/// ```
+/// use immaculate::number::Rational;
+/// use immaculate::rule::unscented::lambda;
+///
+/// let q = Rational::new;
+/// assert_eq!(lambda(&q(2, 1), &q(1, 2), &q(1, 1)), q(-5, 4)); // 1/4 · (2 + 1) − 2
+/// ```
 pub fn lambda<T: Field>(n: &T, alpha: &T, kappa: &T) -> T {
     alpha.clone() * alpha.clone() * (n.clone() + kappa.clone()) - n.clone()
 }
@@ -67,20 +108,22 @@ pub fn lambda<T: Field>(n: &T, alpha: &T, kappa: &T) -> T {
 /// along them fall on the centre and make up for its smaller weight. With another κ, as 0, they push the other points outwards.
 /// sustika2015 prints neither the weights nor λ, and has states of four and of six components.
 ///
-/// # Errors
-///
-/// [`InvalidRule::Dimension`] in dimension zero, [`InvalidRule::Radius`] when n + λ is not positive, [`InvalidRule::RadiusDigits`]
-/// when its root is beyond [`Surd::root`].
-///
-/// # Examples
+/// Example: for n = 2, κ = 3 − 2 = λ: points at the distance √3; weights 1/3 and four times 1/6.
 ///
 /// ```
 /// use immaculate::rule::unscented::{Parameters, unscented};
 ///
-/// let rule = unscented(4, &Parameters::for_gaussian(4)).unwrap();
-/// assert_eq!(rule.weights[0].to_string(), "-1/3");
+/// let rule = unscented(2, &Parameters::for_gaussian(2)).unwrap();
 /// assert_eq!(rule.points[1][0].to_string(), "√3");
+/// assert_eq!(format!("{} {}", rule.weights[0], rule.weights[1]), "1/3 1/6");
+/// // n = 4, κ = −1: the centre counts −1/3, and a covariance need not be positive definite.
+/// assert_eq!(unscented(4, &Parameters::for_gaussian(4)).unwrap().weights[0].to_string(), "-1/3");
 /// ```
+///
+/// # Errors
+///
+/// [`InvalidRule::Dimension`] in dimension zero, [`InvalidRule::Radius`] when n + λ is not positive, [`InvalidRule::RadiusDigits`]
+/// when its root is beyond [`Surd::root`].
 ///
 /// Evidence: `unscented_rule_is_exact_to_degree_three_and_not_four` (exact),
 /// `unscented_rule_has_degree_three_in_every_dimension` (symbolic),
@@ -128,6 +171,16 @@ pub fn unscented(n: usize, parameters: &Parameters) -> Result<ExactRule, Invalid
 ///
 /// Source: as [`unscented`], of which it has the points and their order.
 ///
+/// Example: for n = 2, α = 1, β = 0, κ = 1: λ = 1, and what is rounded is √3 and the quotients.
+///
+/// ```
+/// use immaculate::rule::unscented::unscented_in;
+///
+/// let rule = unscented_in::<f64, 2>(&1.0, &0.0, &1.0).unwrap();
+/// assert_eq!(rule.points[1][0], 3.0_f64.sqrt());
+/// assert_eq!(rule.weights[..2], [1.0 / 3.0, 1.0 / 6.0]);
+/// ```
+///
 /// # Errors
 ///
 /// [`InvalidRule::Radius`] when n + λ is not positive.
@@ -165,6 +218,18 @@ pub fn unscented_in<T: Real, const N: usize>(alpha: &T, beta: &T, kappa: &T) -> 
 /// The weight of the centre for covariances, w₀ + 1 − α² + β.
 ///
 /// Source: as [`lambda`].
+///
+/// Example: for α = 1/2, β = 2: −5/3 + 1 − 1/4 + 2.
+///
+/// ```
+/// use immaculate::number::Rational;
+/// use immaculate::rule::unscented::centre_covariance_weight;
+///
+/// let q = Rational::new;
+/// assert_eq!(centre_covariance_weight(&q(-5, 3), &q(1, 2), &q(2, 1)), q(13, 12));
+/// // α = 1, β = 0: the same as for means
+/// assert_eq!(centre_covariance_weight(&q(1, 3), &q(1, 1), &q(0, 1)), q(1, 3));
+/// ```
 pub fn centre_covariance_weight<T: Field>(centre_weight: &T, alpha: &T, beta: &T) -> T {
     centre_weight.clone() + T::one() - alpha.clone() * alpha.clone() + beta.clone()
 }
@@ -172,6 +237,17 @@ pub fn centre_covariance_weight<T: Field>(centre_weight: &T, alpha: &T, beta: &T
 /// The weight of the centre, λ/(n + λ).
 ///
 /// Source: as [`unscented`].
+///
+/// Example: for n = 2 and n = 4 with κ = 3 − n.
+///
+/// ```
+/// use immaculate::number::Rational;
+/// use immaculate::rule::unscented::centre_weight;
+///
+/// let q = Rational::new;
+/// assert_eq!(centre_weight(&q(2, 1), &q(1, 1)), q(1, 3)); // 1/(2 + 1)
+/// assert_eq!(centre_weight(&q(4, 1), &q(-1, 1)), q(-1, 3)); // −1/(4 − 1)
+/// ```
 pub fn centre_weight<T: Field>(n: &T, lambda: &T) -> T {
     lambda.clone() / (n.clone() + lambda.clone())
 }
@@ -179,6 +255,16 @@ pub fn centre_weight<T: Field>(n: &T, lambda: &T) -> T {
 /// The weight of each of the 2n points on the axes, 1/(2(n + λ)).
 ///
 /// Source: as [`unscented`].
+///
+/// Example: for n = 2, λ = 1.
+///
+/// ```
+/// use immaculate::number::Rational;
+/// use immaculate::rule::unscented::axis_weight;
+///
+/// let q = Rational::new;
+/// assert_eq!(axis_weight(&q(2, 1), &q(1, 1)), q(1, 6)); // 1/(2 · (2 + 1))
+/// ```
 pub fn axis_weight<T: Field>(n: &T, lambda: &T) -> T {
     T::one() / (T::integer(2) * (n.clone() + lambda.clone()))
 }

@@ -17,7 +17,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 ///
 /// Source: Bar-Shalom, Li and Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001, section 5.4.
 ///
-/// # Examples
+/// Example: an error of 4 with the standard deviation 2: (4/2)².
 ///
 /// ```
 /// use immaculate::{gaussian::Gaussian, statistics::consistency::nees};
@@ -38,6 +38,23 @@ pub fn nees<const N: usize>(estimate: &Gaussian<f64, N>, truth: &SVector<f64, N>
 /// ```
 ///
 /// Source: as [`nees`]; for several modes the moments of the mixture that predicts the measurement.
+///
+/// Example: two equally likely modes with innovations 1 and 3 and variances 2 and 4: ν̄ = 2, S̄ = 3 + 1.
+///
+/// ```
+/// use immaculate::imm::Step;
+/// use immaculate::statistics::consistency::nis;
+/// use nalgebra::{matrix, vector};
+///
+/// let mut step = Step::<f64, 1, 1>::zeros(2, 0);
+/// step.measurement = Some(vector![0.0]);
+/// step.predicted_mode_probabilities = vec![0.5, 0.5];
+/// step.innovations = vec![vector![1.0], vector![3.0]];
+/// step.innovation_covariances = vec![matrix![2.0], matrix![4.0]];
+/// assert_eq!(nis(&step), Some(1.0)); // 2²/4
+/// step.measurement = None;
+/// assert_eq!(nis(&step), None);
+/// ```
 pub fn nis<const N: usize, const M: usize>(step: &Step<f64, N, M>) -> Option<f64> {
     step.measurement?;
     let probabilities = &step.predicted_mode_probabilities;
@@ -59,14 +76,14 @@ pub fn nis<const N: usize, const M: usize>(step: &Step<f64, N, M>) -> Option<f64
 ///
 /// Source: the sum of independent χ² variables is χ² with the sum of their degrees of freedom.
 ///
-/// # Examples
+/// Example: one χ² variable of one degree of freedom: a standard Gaussian squared, below 1.959964² with probability 0.95. The tabulated
+/// quantile has seven digits.
 ///
 /// ```
 /// use immaculate::statistics::consistency::bounds;
 ///
-/// // One χ² variable of one degree of freedom: the square of a standard Gaussian below 1.96² with probability 0.95 on one side.
 /// let (_, upper) = bounds(1.0, 1, 0.1);
-/// assert!((upper - 1.959964_f64.powi(2)).abs() < 1e-5);
+/// assert!((upper - 1.959964_f64 * 1.959964).abs() < 1e-5);
 /// ```
 ///
 /// # Panics

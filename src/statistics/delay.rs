@@ -10,7 +10,7 @@
 /// Source: both papers speak of quick switching, zhu2016 in its section 4 and liu2017 in its section 4.2, and neither says how it is
 /// measured. One half is where the true mode becomes more likely than all others together.
 ///
-/// # Examples
+/// Example: mode 1 holds from the third step on and is believed from the fourth.
 ///
 /// ```
 /// use immaculate::statistics::delay::detection_delays;

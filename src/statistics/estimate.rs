@@ -18,6 +18,15 @@ pub struct Estimate {
 
 impl Estimate {
     /// How many standard errors the figure is away from a value; infinite or not a number when the standard error is zero.
+    ///
+    /// Example: 69 ± 0.5 and 70.
+    ///
+    /// ```
+    /// use immaculate::statistics::Estimate;
+    ///
+    /// let estimate = Estimate { value: 69.0, standard_error: 0.5 };
+    /// assert_eq!(estimate.distance_from(70.0), -2.0); // 1 m below, two standard errors
+    /// ```
     pub fn distance_from(&self, value: f64) -> f64 {
         (self.value - value) / self.standard_error
     }
@@ -31,10 +40,12 @@ impl Estimate {
 ///
 /// Source: the variance of a mean of M independent values is an M-th of theirs, which Σ (xₘ − x̄)² / (M − 1) estimates without bias.
 ///
-/// # Examples
+/// Example: √((1 + 1)/(2 · 1)).
 ///
 /// ```
-/// let mean = immaculate::statistics::estimate::mean(&[1.0, 3.0]);
+/// use immaculate::statistics::estimate::mean;
+///
+/// let mean = mean(&[1.0, 3.0]);
 /// assert_eq!((mean.value, mean.standard_error), (2.0, 1.0));
 /// ```
 pub fn mean(values: &[f64]) -> Estimate {
@@ -55,6 +66,15 @@ pub fn mean(values: &[f64]) -> Estimate {
 /// ```
 ///
 /// Source: the delta method, dA/ds̄ = 1/(2A). Where every square is zero, A has no derivative and no spread either: SE(A) = 0.
+///
+/// Example: the mean of 1 and 7 is 4 ± 3, so its root is 2 ± 3/(2 · 2).
+///
+/// ```
+/// use immaculate::statistics::estimate::root_mean_square;
+///
+/// let error = root_mean_square(&[1.0, 7.0]);
+/// assert_eq!((error.value, error.standard_error), (2.0, 0.75));
+/// ```
 ///
 /// Evidence: `the_delta_method_gives_the_spread_of_repeated_experiments`,
 /// `the_band_of_an_error_over_time_is_the_spread_of_repeated_experiments` (statistical),
@@ -82,12 +102,11 @@ pub fn root_mean_square(mean_squares: &[f64]) -> Estimate {
 ///
 /// Why: both filters saw the same truth and the same noise, so their errors are correlated and most of the chance cancels run by run.
 ///
-/// # Examples
+/// Example: the second filter is always a little worse: the difference is certain, the figures are not.
 ///
 /// ```
 /// use immaculate::statistics::estimate::{paired_difference, root_mean_square};
 ///
-/// // The second filter is always a little worse: the difference is certain, the figures are not.
 /// let (good, bad) = ([4.0, 9.0, 2.0], [4.1, 9.1, 2.1]);
 /// assert!(root_mean_square(&good).standard_error > 0.4);
 /// assert!(paired_difference(&good, &bad).standard_error < 0.01);

@@ -18,14 +18,15 @@
 /// Why: the ratio of two root mean squares over the same steps, and so without a unit. It is zero for perfect tracking and 100 for the
 /// estimate 0. It is no property of errors alone: a radar that stands elsewhere divides the same errors by other numbers.
 ///
-/// Errata: the formula is lost in the text; Raol (Multi-sensor data fusion with MATLAB, 2010, chapter 4) has this ratio of norms.
-///
-/// # Examples
+/// Example: ‖(3, −4)‖ = 5 beside ‖(30, 40)‖ = 50.
 ///
 /// ```
 /// use immaculate::statistics::fit_error::percentage_fit_error;
+///
 /// assert_eq!(percentage_fit_error(&[3.0, -4.0], &[30.0, 40.0]), 10.0);
 /// ```
+///
+/// Errata: the formula is lost in the text; Raol (Multi-sensor data fusion with MATLAB, 2010, chapter 4) has this ratio of norms.
 ///
 /// Evidence: `the_fit_error_is_zero_for_perfect_tracking_and_a_hundred_for_none`,
 /// `the_fit_error_has_no_unit_and_depends_on_where_the_radar_stands` (property).
@@ -72,6 +73,19 @@ impl FitForm {
 ///
 /// Why: one number for both coordinates, of which a filter has to be good in both. The joint norm alone is a ratio of an error to a
 /// distance; it lies between the two coordinates' own.
+///
+/// Example: one step: x is off by 3 of 10, y by 4 of 10, so 30 % and 40 %.
+///
+/// ```
+/// use immaculate::statistics::fit_error::{FitForm, position_fit_error};
+///
+/// let of = |form| position_fit_error(form, [&[3.0], &[4.0]], [&[10.0], &[10.0]]);
+/// assert_eq!(of(FitForm::RootSumSquare), 50.0);
+/// assert_eq!(of(FitForm::Mean), 35.0);
+/// assert_eq!(of(FitForm::Sum), 70.0);
+/// // ‖(3, 4)‖/‖(10, 10)‖ = 5/√200, between the two; a few units of the last place.
+/// assert!((of(FitForm::JointNorm) - 1250.0_f64.sqrt()).abs() < 1e-13);
+/// ```
 ///
 /// Errata: which combination is meant cannot be read any more; [`FitForm`] has the candidates.
 ///

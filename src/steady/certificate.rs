@@ -38,6 +38,20 @@ pub struct Edge {
 ///
 /// Source: Ahmadi, Jungers, Parrilo and Roozbehani 2014, path-complete graph Lyapunov functions.
 ///
+/// Example: one node, P = 1, and the matrices 1/2 and −3/4: 1 − 1/4 > 0 and 1 − 9/16 > 0.
+///
+/// ```
+/// use immaculate::number::Rational;
+/// use immaculate::steady::certificate::Quadratics;
+/// use nalgebra::matrix;
+///
+/// let q = Rational::new;
+/// let certificate = Quadratics::<1> { edges: Quadratics::<1>::memory(2, 0), forms: vec![matrix![q(1, 1)]] };
+/// assert!(certificate.check(&[matrix![q(1, 2)], matrix![q(-3, 4)]]).is_ok());
+/// // 1 − 1 is not above zero.
+/// assert!(certificate.check(&[matrix![q(1, 2)], matrix![q(-1, 1)]]).is_err());
+/// ```
+///
 /// Evidence: `the_paper_s_filters_are_certified_stable`, `a_spoilt_certificate_is_refused` (exact).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Quadratics<const N: usize> {
@@ -52,6 +66,19 @@ pub struct Quadratics<const N: usize> {
 /// Why this proves a joint spectral radius above one: powers of the product are products too, and grow like the powers of the bound.
 ///
 /// Source: Rota and Strang 1960.
+///
+/// Example: each of the two forgets all in two steps; one after the other they are [0 0; 0 4].
+///
+/// ```
+/// use immaculate::number::{Field, Rational};
+/// use immaculate::steady::certificate::Product;
+/// use nalgebra::matrix;
+///
+/// let matrices = [matrix![0, 2; 0, 0], matrix![0, 0; 2, 0]].map(|a| a.map(Rational::integer));
+/// let grows = |word: &[usize]| Product { word: word.to_vec(), radius: Rational::integer(3) };
+/// assert!(grows(&[0, 1]).check(&matrices).is_ok());
+/// assert!(grows(&[0, 0]).check(&matrices).is_err());
+/// ```
 ///
 /// Evidence: `a_product_of_two_stable_filters_is_unstable`, `a_spoilt_certificate_is_refused` (exact).
 #[derive(Debug, Clone, PartialEq)]
@@ -117,6 +144,16 @@ impl<const N: usize> Quadratics<N> {
     /// one: forms that remember the last letters.
     ///
     /// Source: de Bruijn 1946; Lee and Dullerud 2006.
+    ///
+    /// Example: two letters, one remembered: a node is the last letter, and every edge leads to the node of its own letter.
+    ///
+    /// ```
+    /// use immaculate::steady::certificate::Quadratics;
+    ///
+    /// let edges = Quadratics::<1>::memory(2, 1);
+    /// assert_eq!(edges.len(), 4);
+    /// assert!(edges.iter().all(|edge| edge.to == edge.letter));
+    /// ```
     pub fn memory(letters: usize, length: u32) -> Vec<Edge> {
         let nodes = letters.pow(length);
         let edges = (0..nodes).flat_map(|from| {

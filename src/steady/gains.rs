@@ -32,6 +32,14 @@ use nalgebra::{Matrix3, Vector3};
 /// | `interval`             | s       | t                                                                |
 ///
 /// Source: Kalata 1984.
+///
+/// Example: for q = 1, R = 4, t = 2: √(1/4) · 4.
+///
+/// ```
+/// use immaculate::steady::gains::tracking_index;
+///
+/// assert_eq!(tracking_index(&1.0, &4.0, &2.0), 2.0);
+/// ```
 pub fn tracking_index<T: Real>(noise_variance: &T, measurement_variance: &T, interval: &T) -> T {
     (noise_variance.clone() / measurement_variance.clone()).sqrt() * interval.clone() * interval.clone()
 }
@@ -39,6 +47,15 @@ pub fn tracking_index<T: Real>(noise_variance: &T, measurement_variance: &T, int
 /// Tracking index of a constant velocity filter with the damping root θ: Λ = 2(1 − θ)²/θ.
 ///
 /// Source: Kalata 1984, Λ² = β²/(1 − α), with α = 1 − θ² and β = 2(1 − θ)².
+///
+/// Example: for θ = 1/2: 2 · 1/4 / (1/2).
+///
+/// ```
+/// use immaculate::number::Rational;
+/// use immaculate::steady::gains::alpha_beta_index;
+///
+/// assert_eq!(alpha_beta_index(&Rational::new(1, 2)), Rational::new(1, 1));
+/// ```
 ///
 /// Evidence: `the_alpha_beta_gain_solves_the_riccati_equation` (symbolic).
 pub fn alpha_beta_index<T: Field>(root: &T) -> T {
@@ -49,6 +66,15 @@ pub fn alpha_beta_index<T: Field>(root: &T) -> T {
 /// Tracking index of a constant acceleration filter with the damping root θ: Λ = 2(1 − θ)³/(θ(1 + θ)).
 ///
 /// Source: Kalata 1984, Λ² = γ²/(4(1 − α)), with γ = β²/α.
+///
+/// Example: for θ = 1/2: 2 · 1/8 / (1/2 · 3/2).
+///
+/// ```
+/// use immaculate::number::Rational;
+/// use immaculate::steady::gains::alpha_beta_gamma_index;
+///
+/// assert_eq!(alpha_beta_gamma_index(&Rational::new(1, 2)), Rational::new(1, 3));
+/// ```
 ///
 /// Evidence: `the_alpha_beta_gamma_gain_solves_the_riccati_equation` (symbolic).
 pub fn alpha_beta_gamma_index<T: Field>(root: &T) -> T {
@@ -66,6 +92,14 @@ pub fn alpha_beta_gamma_index<T: Field>(root: &T) -> T {
 /// nothing that could cancel, however small or large Λ is.
 ///
 /// Source: Kalata 1984, the quadratic for α; solved by this substitution here.
+///
+/// Example: for Λ = 1: y = √(1 + 8) = 3, θ = 8/16.
+///
+/// ```
+/// use immaculate::steady::gains::alpha_beta_root;
+///
+/// assert_eq!(alpha_beta_root(&1.0), 0.5);
+/// ```
 ///
 /// Evidence: `the_damping_roots_give_back_their_index` (enclosed).
 pub fn alpha_beta_root<T: Real>(index: &T) -> T {
@@ -88,6 +122,15 @@ pub fn alpha_beta_root<T: Real>(index: &T) -> T {
 /// which Cardano's formula solves where it has one real root, and Viète's where it has three; the root above one is wanted.
 ///
 /// Source: Gray and Murray 1993 have the cubic for θ; solved by this substitution here.
+///
+/// Example: for Λ = 1/3: y³ − y = 24 has the root y = 3, so θ = (3 − 1)/(3 + 1). The cube root by ln and exp costs a few units of the last
+/// place.
+///
+/// ```
+/// use immaculate::steady::gains::alpha_beta_gamma_root;
+///
+/// assert!((alpha_beta_gamma_root(&(1.0_f64 / 3.0)) - 0.5).abs() < 1e-15);
+/// ```
 ///
 /// Evidence: `the_damping_roots_give_back_their_index` (enclosed).
 pub fn alpha_beta_gamma_root<T: Real>(index: &T) -> T {
@@ -115,6 +158,17 @@ pub fn alpha_beta_gamma_root<T: Real>(index: &T) -> T {
 ///
 /// Source: Kalata 1984, α = 1 − θ², β = 2(2 − α) − 4√(1 − α) = 2(1 − θ)².
 ///
+/// Example: for θ = 1/2: α = 1 − 1/4, β = 2 · 1/4; t = 2.
+///
+/// ```
+/// use immaculate::number::Rational;
+/// use immaculate::steady::gains::alpha_beta_gain;
+/// use nalgebra::vector;
+///
+/// let q = Rational::new;
+/// assert_eq!(alpha_beta_gain(&q(1, 2), &q(2, 1)), vector![q(3, 4), q(1, 4), q(0, 1)]);
+/// ```
+///
 /// Evidence: `the_alpha_beta_gain_solves_the_riccati_equation` (symbolic).
 pub fn alpha_beta_gain<T: Field>(root: &T, interval: &T) -> Vector3<T> {
     Vector3::new(alpha(root), beta(root) / interval.clone(), T::zero())
@@ -130,6 +184,17 @@ pub fn alpha_beta_gain<T: Field>(root: &T, interval: &T) -> Vector3<T> {
 ///
 /// Source: Kalata 1984, with γ = β²/α.
 ///
+/// Example: for θ = 1/2: α = 3/4, β = 1/2, γ = (1/4)/(3/4) = 1/3; t = 1.
+///
+/// ```
+/// use immaculate::number::Rational;
+/// use immaculate::steady::gains::alpha_beta_gamma_gain;
+/// use nalgebra::vector;
+///
+/// let q = Rational::new;
+/// assert_eq!(alpha_beta_gamma_gain(&q(1, 2), &q(1, 1)), vector![q(3, 4), q(1, 2), q(1, 6)]);
+/// ```
+///
 /// Evidence: `the_alpha_beta_gamma_gain_solves_the_riccati_equation` (symbolic).
 pub fn alpha_beta_gamma_gain<T: Field>(root: &T, interval: &T) -> Vector3<T> {
     let t = || interval.clone();
@@ -141,6 +206,15 @@ pub fn alpha_beta_gamma_gain<T: Field>(root: &T, interval: &T) -> Vector3<T> {
 /// Innovation variance of either filter in its steady state: S = R/(1 − α) = R/θ², m².
 ///
 /// Source: α = P⁻₁₁/S and S = P⁻₁₁ + R.
+///
+/// Example: for θ = 1/2, R = 1: P⁻₁₁ = α S = 3 and S = 3 + 1.
+///
+/// ```
+/// use immaculate::number::Rational;
+/// use immaculate::steady::gains::innovation_variance;
+///
+/// assert_eq!(innovation_variance(&Rational::new(1, 2), &Rational::new(1, 1)), Rational::new(4, 1));
+/// ```
 ///
 /// Evidence: `the_alpha_beta_gain_solves_the_riccati_equation` (symbolic).
 pub fn innovation_variance<T: Field>(root: &T, measurement_variance: &T) -> T {
@@ -156,6 +230,18 @@ pub fn innovation_variance<T: Field>(root: &T, measurement_variance: &T) -> T {
 /// ```
 ///
 /// Source: the first column is S K; the rest follows from P⁻ = F (I − KH) P⁻ Fᵀ + G q Gᵀ entry by entry.
+///
+/// Example: for θ = 1/2, R = 1, t = 1: S = 4, so 4 · 3/4, 4 · 1/2 and 4 · 1/2 · (3/2 + 1/2)/2.
+///
+/// ```
+/// use immaculate::number::{Field, Rational};
+/// use immaculate::steady::gains::alpha_beta_covariance;
+/// use nalgebra::matrix;
+///
+/// let one = Rational::integer(1);
+/// let predicted = alpha_beta_covariance(&Rational::new(1, 2), &one, &one);
+/// assert_eq!(predicted, matrix![3, 2, 0; 2, 2, 0; 0, 0, 0].map(Rational::integer));
+/// ```
 ///
 /// Evidence: `the_alpha_beta_gain_solves_the_riccati_equation` (symbolic).
 #[rustfmt::skip]
@@ -181,6 +267,18 @@ pub fn alpha_beta_covariance<T: Field>(root: &T, measurement_variance: &T, inter
 /// ```
 ///
 /// Source: as [`alpha_beta_covariance`].
+///
+/// Example: for θ = 1/2, R = 1, t = 1: S = 4 and α, β, γ = 3/4, 1/2, 1/3. The first column is 4 · [3/4, 1/2, 1/6], S times the gain.
+///
+/// ```
+/// use immaculate::number::{Field, Rational};
+/// use immaculate::steady::gains::alpha_beta_gamma_covariance;
+/// use nalgebra::matrix;
+///
+/// let one = Rational::integer(1);
+/// let predicted = alpha_beta_gamma_covariance(&Rational::new(1, 2), &one, &one);
+/// assert_eq!(predicted, matrix![9, 6, 2; 6, 5, 2; 2, 2, 1].map(|entry| Rational::new(entry, 3)));
+/// ```
 ///
 /// Evidence: `the_alpha_beta_gamma_gain_solves_the_riccati_equation` (symbolic).
 #[rustfmt::skip]

@@ -14,6 +14,19 @@ use nalgebra::SMatrix;
 ///
 /// Source: Golub and Van Loan, Matrix Computations, 4th edition, section 3.4.
 ///
+/// Example: 2x + y = 4, x + 3y = 7: x = 1, y = 2.
+///
+/// ```
+/// use immaculate::number::{Field, Rational};
+/// use immaculate::steady::linear::solve;
+///
+/// let rows = |rows: [[i64; 2]; 2]| rows.map(|row| row.map(Rational::integer).to_vec()).to_vec();
+/// let column = |column: [i64; 2]| column.map(|entry| vec![Rational::integer(entry)]).to_vec();
+/// assert_eq!(solve(rows([[2, 1], [1, 3]]), column([4, 7])), Some(column([1, 2])));
+/// // x + y = 1 twice has no one solution.
+/// assert_eq!(solve(rows([[1, 1], [1, 1]]), column([1, 1])), None);
+/// ```
+///
 /// Evidence: `elimination_solves_what_can_be_solved` (exact).
 pub fn solve<T: Field + PartialOrd>(mut matrix: Rows<T>, mut right_side: Rows<T>) -> Option<Rows<T>> {
     let n = matrix.len();
@@ -61,6 +74,18 @@ fn greatest<T: Field + PartialOrd>(matrix: &Rows<T>, column: usize) -> Option<us
 /// The solution X of X = A X Aᵀ + C; none if there is not exactly one.
 ///
 /// Source: the linear system for the entries of X, (I − A ⊗ A) vec X = vec C.
+///
+/// Example: x = ½ · x · ½ + 3 has the solution 4; x = x + 3 has none.
+///
+/// ```
+/// use immaculate::number::Rational;
+/// use immaculate::steady::linear::stein;
+/// use nalgebra::matrix;
+///
+/// let number = |p, q| matrix![Rational::new(p, q)];
+/// assert_eq!(stein(&number(1, 2), &number(3, 1)), Some(number(4, 1)));
+/// assert_eq!(stein(&number(1, 1), &number(3, 1)), None);
+/// ```
 ///
 /// Evidence: `the_stein_equation_is_solved_exactly` (exact).
 pub fn stein<T: Field + PartialOrd, const N: usize>(

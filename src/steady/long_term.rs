@@ -137,6 +137,17 @@ struct Round {
 ///
 /// Source: derbez2000, section 2.2, algorithm.
 ///
+/// Example: A target at a = 50 m/s²: constant acceleration becomes certain. The printed weight then does not let the rounds end.
+///
+/// ```
+/// use immaculate::steady::long_term::{Form, Setting, predict};
+///
+/// let setting = Setting { interval: 2.0, acceleration: 50.0, measurement_variance: 0.05, noises: [5.0, 5.0], stay: 0.95 };
+/// assert!(!predict(&setting, Form::Printed).unwrap().converged);
+/// let corrected = predict(&setting, Form::Corrected).unwrap();
+/// assert!(corrected.converged && corrected.probabilities[1] > 0.9);
+/// ```
+///
 /// Errata: see the head of this file; the left side of step 3 has the index 0 for 1.
 ///
 /// Evidence: `the_corrected_algorithm_predicts_the_simulated_error`, `the_printed_weight_lets_the_algorithm_run_away` (statistics).
@@ -298,6 +309,15 @@ fn corrected_round(setting: &Setting, round: &Round) -> Option<Round> {
 /// ln E N(ν; 0, s) for an innovation ν ~ N(bias, variance): ln N(bias; 0, s + variance).
 ///
 /// Source: derbez2000, step 4, which has s for both; ∫ N(ν; 0, s) N(ν; b, v) dν = N(b; 0, s + v).
+///
+/// Example: an innovation with the mean 2 and the variance 3, believed to have 1: ln N(2; 0, 4) = −(ln 8π + 2²/4)/2.
+///
+/// ```
+/// use immaculate::steady::long_term::expected_log_likelihood;
+///
+/// let exact = -((8.0 * std::f64::consts::PI).ln() + 1.0) / 2.0;
+/// assert!((expected_log_likelihood(2.0, 1.0, 3.0) - exact).abs() < 1e-15); // a few units of the last place
+/// ```
 pub fn expected_log_likelihood(bias: f64, believed: f64, variance: f64) -> f64 {
     log_density(&Vector1::new(bias), &ldl(&Matrix1::new(believed + variance)))
 }
@@ -316,6 +336,18 @@ fn normalised(predicted: &[f64; 2], log_likelihoods: &[f64; 2]) -> [f64; 2] {
 /// ```
 ///
 /// Source: derbez2000 (7) for two filters at once; exact as long as gains and probabilities are constant.
+///
+/// Example: two filters that do not mix; t = a = R = 1. Constant velocity errs by a variance of 2/3 and a lag of 1/2: 2/3 + 1/4.
+///
+/// ```
+/// use immaculate::steady::long_term::{JointErrors, Setting};
+/// use nalgebra::vector;
+///
+/// let setting = Setting { interval: 1.0, acceleration: 1.0, measurement_variance: 1.0, noises: [1.0, 1.0], stay: 1.0 };
+/// let gains = [vector![0.75, 0.5, 0.0], vector![0.75, 0.5, 1.0 / 6.0]];
+/// let errors = JointErrors::new(&setting, &gains, &[vec![1.0, 0.0], vec![0.0, 1.0]]).unwrap();
+/// assert!((errors.moment(0, 0)[(0, 0)] - 11.0 / 12.0).abs() < 1e-14); // rounding of the doubled sums
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointErrors {
     mean: SVector<f64, 6>,
@@ -357,6 +389,22 @@ impl JointErrors {
     /// The second moment of the combined estimate's error, Σᵢⱼ μᵢ μⱼ E eⁱ eʲᵀ.
     ///
     /// Source: derbez2000, step 6 corrected: the paper's Σ μᵢ E eⁱ eⁱᵀ is above it, since Σ μᵢ eⁱeⁱᵀ − e eᵀ = Σ μᵢ (eⁱ − e)(eⁱ − e)ᵀ.
+    ///
+    /// Example: two filters that mix in halves, on an acceleration of 1 m/s².
+    ///
+    /// ```
+    /// use immaculate::steady::long_term::{JointErrors, Setting};
+    /// use nalgebra::vector;
+    ///
+    /// let setting = Setting { interval: 1.0, acceleration: 1.0, measurement_variance: 1.0, noises: [1.0, 1.0], stay: 0.5 };
+    /// let gains = [vector![0.75, 0.5, 0.0], vector![0.75, 0.5, 1.0 / 6.0]];
+    /// let errors = JointErrors::new(&setting, &gains, &[vec![0.5, 0.5], vec![0.5, 0.5]]).unwrap();
+    /// // With one filter certain its own error is left; between equals the printed sum has half of their gap's spread too much.
+    /// assert_eq!(errors.combined(&[1.0, 0.0]), errors.moment(0, 0));
+    /// let printed = (errors.moment(0, 0) + errors.moment(1, 1)) * 0.5;
+    /// let apart = printed - errors.combined(&[0.5, 0.5]) - errors.gap() * 0.25;
+    /// assert!(apart.abs().max() < 1e-12 * printed.abs().max()); // rounding
+    /// ```
     pub fn combined(&self, probabilities: &[f64; 2]) -> Matrix3<f64> {
         let mut sum = Matrix3::zeros();
         for i in 0..2 {

@@ -41,6 +41,21 @@ impl<T: Field> Mismatch<T> {
     /// ```text
     /// A₊ = (I − K₊H) F,   b₊ = (I − K₊H) ΔF xₙ = (I − K₊H) b
     /// ```
+    ///
+    /// Example: for t = 1, a = 1, K = [3/4, 1/2, 0]ᵀ: b = [1/2, 1, 1]ᵀ and (I − K H) b = [1/2 − 3/8, 1 − 1/4, 1]ᵀ.
+    ///
+    /// ```
+    /// use immaculate::model::acceleration::{embedded_constant_velocity, position_matrix};
+    /// use immaculate::number::Rational;
+    /// use immaculate::steady::mismatch::{Mismatch, motion_missed};
+    /// use nalgebra::vector;
+    ///
+    /// let (q, one) = (Rational::new, Rational::new(1, 1));
+    /// let gain = vector![q(3, 4), q(1, 2), q(0, 1)];
+    /// let missed = motion_missed(&one, &one);
+    /// let filter = Mismatch::new(&embedded_constant_velocity(&one), &position_matrix(), gain, &missed, one);
+    /// assert_eq!(filter.missed, vector![q(1, 8), q(3, 4), q(1, 1)]);
+    /// ```
     pub fn new(
         transition: &Matrix3<T>,
         measurement: &RowVector3<T>,
@@ -60,6 +75,22 @@ impl<T: Field> Mismatch<T> {
     /// The lag: the mean of the error in its steady state, m = (I − A₊)⁻¹ b₊.
     ///
     /// Source: derbez2000 (7), in which it stands as (I − A₊)⁻¹ b₊; undecided where I − A₊ has no inverse.
+    ///
+    /// Example: A₊ = [1/4 1/4 0; −1/2 1/2 0; 0 0 0] and b₊ = [1/8, 3/4, 1]ᵀ carry m = [1/2, 1, 1]ᵀ into itself: 1/8 + 1/4 + 1/8 = 1/2 and
+    /// −1/4 + 1/2 + 3/4 = 1.
+    ///
+    /// ```
+    /// use immaculate::model::acceleration::{embedded_constant_velocity, position_matrix};
+    /// use immaculate::number::Rational;
+    /// use immaculate::steady::mismatch::{Mismatch, motion_missed};
+    /// use nalgebra::vector;
+    ///
+    /// let (q, one) = (Rational::new, Rational::new(1, 1));
+    /// let gain = vector![q(3, 4), q(1, 2), q(0, 1)];
+    /// let missed = motion_missed(&one, &one);
+    /// let filter = Mismatch::new(&embedded_constant_velocity(&one), &position_matrix(), gain, &missed, one);
+    /// assert_eq!(filter.lag(), vector![q(1, 2), q(1, 1), q(1, 1)]);
+    /// ```
     ///
     /// Evidence: `the_mismatch_equation_has_the_stated_solution`, `the_lag_has_a_closed_form` (symbolic).
     pub fn lag(&self) -> Vector3<T> {
@@ -82,6 +113,22 @@ impl<T: Field> Mismatch<T> {
     ///
     /// Why: the second moment of A₊e + b₊ − K₊v, where E e = (I − A₊)⁻¹b₊ in the steady state and v is independent of e. It is an equality
     /// for the whole matrix; the paper states it as a bound of its trace, which adds m² and (m/s)² and always contains a².
+    ///
+    /// Example: for t = a = R = 1, K = [3/4, 1/2, 0]ᵀ: the scatter [2/3 1/3; 1/3 1/3] and the lag m = [1/2, 1, 1]ᵀ, times its transpose.
+    ///
+    /// ```
+    /// use immaculate::model::acceleration::{embedded_constant_velocity, position_matrix};
+    /// use immaculate::number::Rational;
+    /// use immaculate::steady::mismatch::{Mismatch, motion_missed};
+    /// use nalgebra::{matrix, vector};
+    ///
+    /// let (q, one) = (Rational::new, Rational::new(1, 1));
+    /// let gain = vector![q(3, 4), q(1, 2), q(0, 1)];
+    /// let missed = motion_missed(&one, &one);
+    /// let filter = Mismatch::new(&embedded_constant_velocity(&one), &position_matrix(), gain, &missed, one);
+    /// let error = matrix![11, 10, 6; 10, 16, 12; 6, 12, 12].map(|entry| q(entry, 12));
+    /// assert_eq!(filter.right_side(&error), error);
+    /// ```
     ///
     /// Errata: (F, G) stabilisable is not enough for the solution to exist, see the head of this file.
     ///
@@ -119,6 +166,23 @@ impl<T: Field + PartialOrd> Mismatch<T> {
     /// exactly one solution. A solution is the long-term error only if ρ(A₊) < 1; that is for the caller to know, see
     /// [`has_radius_below`](super::polynomial::has_radius_below).
     ///
+    /// Example: for t = a = R = 1, K = [3/4, 1/2, 0]ᵀ: a variance of 2/3 and a lag of 1/2, 2/3 + 1/4.
+    ///
+    /// ```
+    /// use immaculate::model::acceleration::{embedded_constant_velocity, position_matrix};
+    /// use immaculate::number::Rational;
+    /// use immaculate::steady::mismatch::{Mismatch, motion_missed};
+    /// use nalgebra::vector;
+    ///
+    /// let (q, one) = (Rational::new, Rational::new(1, 1));
+    /// let missed = motion_missed(&one, &one);
+    /// let filter = |gain| Mismatch::new(&embedded_constant_velocity(&one), &position_matrix(), gain, &missed, one.clone());
+    /// let error = filter(vector![q(3, 4), q(1, 2), q(0, 1)]).long_term_error().unwrap();
+    /// assert_eq!(error[(0, 0)], q(11, 12));
+    /// // The gain that process noise of zero ends with: nothing settles.
+    /// assert_eq!(filter(vector![q(0, 1), q(0, 1), q(0, 1)]).long_term_error(), None);
+    /// ```
+    ///
     /// Evidence: `the_mismatch_equation_has_the_stated_solution` (exact), `without_process_noise_nothing_settles` (exact).
     pub fn long_term_error(&self) -> Option<Matrix3<T>> {
         let noise = &self.gain * self.gain.transpose() * self.measurement_variance.clone();
@@ -131,6 +195,17 @@ impl<T: Field + PartialOrd> Mismatch<T> {
 /// What a constant velocity filter does not know of a target with the acceleration a: b = ΔF xₙ = a [t²/2, t, 1]ᵀ.
 ///
 /// Source: derbez2000, section 2.2, not numbered.
+///
+/// Example: for a = 3, t = 2: 3 · [2, 2, 1].
+///
+/// ```
+/// use immaculate::number::{Field, Rational};
+/// use immaculate::steady::mismatch::motion_missed;
+/// use nalgebra::vector;
+///
+/// let missed = motion_missed(&Rational::integer(3), &Rational::integer(2));
+/// assert_eq!(missed, vector![6, 6, 3].map(Rational::integer));
+/// ```
 pub fn motion_missed<T: Field>(acceleration: &T, interval: &T) -> Vector3<T> {
     acceleration_response(interval) * acceleration.clone()
 }
@@ -149,6 +224,18 @@ pub fn motion_missed<T: Field>(acceleration: &T, interval: &T) -> Vector3<T> {
 ///
 /// Source: the solution of derbez2000 (7); in the tracking literature Benedict and Bordner 1962.
 ///
+/// Example: for α = 3/4, β = 1/2, t = 1, a = 1: (1/4)/(1/2) and (3/2 − 1/2)/(2 · 1/2).
+///
+/// ```
+/// use immaculate::number::Rational;
+/// use immaculate::steady::mismatch::alpha_beta_lag;
+/// use nalgebra::vector;
+///
+/// let (q, one) = (Rational::new, Rational::new(1, 1));
+/// let lag = alpha_beta_lag(&vector![q(3, 4), q(1, 2), q(0, 1)], &one, &one);
+/// assert_eq!(lag, vector![q(1, 2), q(1, 1), q(1, 1)]);
+/// ```
+///
 /// Evidence: `the_lag_has_a_closed_form` (symbolic).
 pub fn alpha_beta_lag<T: Field>(gain: &Vector3<T>, acceleration: &T, interval: &T) -> Vector3<T> {
     let (t, two) = (|| interval.clone(), || T::integer(2));
@@ -162,6 +249,18 @@ pub fn alpha_beta_lag<T: Field>(gain: &Vector3<T>, acceleration: &T, interval: &
 ///
 /// Source: H (F m + b), with m from [`alpha_beta_lag`]. The bias of step 4 of the paper's algorithm, a t²/2, is that of a filter without a
 /// lag: smaller by the factor β/2.
+///
+/// Example: for a = 1, t = 1, β = 1/2: 1/(1/2), four times the a t²/2 of step 4.
+///
+/// ```
+/// use immaculate::number::Rational;
+/// use immaculate::steady::mismatch::alpha_beta_innovation;
+/// use nalgebra::vector;
+///
+/// let (q, one) = (Rational::new, Rational::new(1, 1));
+/// let bias = alpha_beta_innovation(&vector![q(3, 4), q(1, 2), q(0, 1)], &one, &one);
+/// assert_eq!(bias, q(2, 1));
+/// ```
 ///
 /// Evidence: `the_lag_has_a_closed_form` (symbolic).
 pub fn alpha_beta_innovation<T: Field>(gain: &Vector3<T>, acceleration: &T, interval: &T) -> T {
@@ -184,6 +283,19 @@ pub fn alpha_beta_innovation<T: Field>(gain: &Vector3<T>, acceleration: &T, inte
 ///
 /// Source: Benedict and Bordner 1962, variance reduction of the α-β filter.
 ///
+/// Example: for α = 3/4, β = 1/2, R = t = 1: 1/(3/4 · (4 − 3/2 − 1/2)) = 2/3 times 2 · 9/16 + 1/2 · (2 − 9/4) = 1, 1/2 · (3/2 − 1/2) = 1/2
+/// and 2 · 1/4 = 1/2.
+///
+/// ```
+/// use immaculate::number::Rational;
+/// use immaculate::steady::mismatch::alpha_beta_scatter;
+/// use nalgebra::{matrix, vector};
+///
+/// let (q, one) = (Rational::new, Rational::new(1, 1));
+/// let scatter = alpha_beta_scatter(&vector![q(3, 4), q(1, 2), q(0, 1)], &one, &one);
+/// assert_eq!(scatter, matrix![2, 1, 0; 1, 1, 0; 0, 0, 0].map(|entry| q(entry, 3)));
+/// ```
+///
 /// Evidence: `the_mismatch_equation_has_the_stated_solution` (symbolic).
 #[rustfmt::skip]
 pub fn alpha_beta_scatter<T: Field>(gain: &Vector3<T>, measurement_variance: &T, interval: &T) -> Matrix3<T> {
@@ -204,6 +316,21 @@ pub fn alpha_beta_scatter<T: Field>(gain: &Vector3<T>, measurement_variance: &T,
 /// The inverse by cofactors, A⁻¹ = adj A/|A|: the form that needs no pivot, so that it can be run on unknowns.
 ///
 /// Source: Cramer 1750; undecided where |A| is zero.
+///
+/// Example: a triangular matrix, and one that has no inverse.
+///
+/// ```
+/// use immaculate::number::{Field, Rational};
+/// use immaculate::steady::mismatch::inverse;
+/// use nalgebra::matrix;
+///
+/// let whole = Rational::integer;
+/// let inverted = inverse(&matrix![1, 1, 0; 0, 1, 1; 0, 0, 1].map(whole));
+/// assert_eq!(inverted, matrix![1, -1, 1; 0, 1, -1; 0, 0, 1].map(whole));
+/// // A row twice: the determinant is zero, and no entry is decided.
+/// let inverted = inverse(&matrix![1, 1, 0; 1, 1, 0; 0, 0, 1].map(whole));
+/// assert!(inverted.iter().all(|entry| !entry.is_decided()));
+/// ```
 pub fn inverse<T: Field>(matrix: &Matrix3<T>) -> Matrix3<T> {
     let entry = |i: usize, j: usize| matrix[(i % 3, j % 3)].clone();
     // The cyclic order of rows and columns takes care of the signs.

@@ -35,6 +35,17 @@ use nalgebra::{Matrix1, Matrix3, SMatrix, Vector3};
 ///
 /// Source: derbez2000, section 2.2.
 ///
+/// Example: for θ = 1/2: K = [3/4, 1/2, 0]ᵀ, so (I − K H) F has 1/4 of F's first row, and its second less 1/2 of the first.
+///
+/// ```
+/// use immaculate::number::Rational;
+/// use immaculate::steady::pair::velocity_matrix;
+/// use nalgebra::matrix;
+///
+/// let closed_loop = velocity_matrix(&Rational::new(1, 2));
+/// assert_eq!(closed_loop, matrix![1, 1, 0; -2, 2, 0; 0, 0, 0].map(|entry| Rational::new(entry, 4)));
+/// ```
+///
 /// Evidence: `each_filter_by_itself_is_stable` (symbolic).
 pub fn velocity_matrix<T: Field>(root: &T) -> Matrix3<T> {
     let motion = embedded_constant_velocity(&T::one());
@@ -47,6 +58,17 @@ pub fn velocity_matrix<T: Field>(root: &T) -> Matrix3<T> {
 /// p(−1) = 8θ/(1 + θ) > 0 and p(0) = θ < 1.
 ///
 /// Source: derbez2000, section 2.2, as [`velocity_matrix`].
+///
+/// Example: for θ = 1/2: K = [3/4, 1/2, 1/6]ᵀ and F's first row is [1, 1, 1/2].
+///
+/// ```
+/// use immaculate::number::Rational;
+/// use immaculate::steady::pair::acceleration_matrix;
+/// use nalgebra::matrix;
+///
+/// let closed_loop = acceleration_matrix(&Rational::new(1, 2));
+/// assert_eq!(closed_loop, matrix![6, 6, 3; -12, 12, 18; -4, -4, 22].map(|entry| Rational::new(entry, 24)));
+/// ```
 ///
 /// Evidence: `each_filter_by_itself_is_stable` (symbolic).
 pub fn acceleration_matrix<T: Field>(root: &T) -> Matrix3<T> {
@@ -70,6 +92,22 @@ fn closed_loop<T: Field>(motion: Matrix3<T>, gain: &Vector3<T>) -> Matrix3<T> {
 /// |-------|------------|-------|-------------------------------------------------------|
 /// | μⁱʲ₊  | `mixing`   | R     | μᵢ∣ⱼ over i, for one j                                |
 /// | (I − Kʲ₊H)Fʲ | `matrices` | R × N × N | Aᵢ                                          |
+///
+/// Example: A₁ = 3/2, A₂ = −3/2, and each filter takes 3/4 of its own: M₁ = 3/4 · 3/2 − 1/4 · 3/2 = 3/4, which looks stable.
+///
+/// ```
+/// use immaculate::number::Rational;
+/// use immaculate::steady::pair::{frozen_matrix, remark_1_matrix};
+/// use immaculate::steady::polynomial::has_radius_below;
+/// use nalgebra::matrix;
+///
+/// let q = Rational::new;
+/// let matrices = [matrix![q(3, 2)], matrix![q(-3, 2)]];
+/// let mixing = [vec![q(3, 4), q(1, 4)], vec![q(1, 4), q(3, 4)]];
+/// assert_eq!(remark_1_matrix(&mixing[0], &matrices), matrix![q(3, 4)]);
+/// // The errors of both together have λ² = 9/8.
+/// assert_eq!(has_radius_below(&frozen_matrix(&mixing, &matrices), &q(1, 1)), Some(false));
+/// ```
 ///
 /// Errata: it is said to control the stability of the whole and does not, in either direction, even for constant probabilities: the
 /// filters' errors differ, so that no single N × N matrix carries them. [`frozen_matrix`] does.
@@ -99,6 +137,16 @@ pub fn remark_1_matrix<T: Field, const N: usize>(mixing: &[T], matrices: &[SMatr
 ///
 /// Source: the mixed estimate of (1) and the update of section 3, without noise.
 ///
+/// Example: e₁ ↦ 2 (3/4 e₁ + 1/4 e₂), e₂ ↦ 4 (1/2 e₁ + 1/2 e₂).
+///
+/// ```
+/// use immaculate::steady::pair::frozen_matrix;
+/// use nalgebra::matrix;
+///
+/// let mixing = [vec![0.75, 0.25], vec![0.5, 0.5]];
+/// assert_eq!(frozen_matrix(&mixing, &[matrix![2.0], matrix![4.0]]), [[1.5, 0.5], [2.0, 2.0]]);
+/// ```
+///
 /// Evidence: `the_frozen_matrix_carries_the_errors_of_the_filter` (exact).
 pub fn frozen_matrix<T: Field, const N: usize>(mixing: &[Vec<T>], matrices: &[SMatrix<T, N, N>]) -> Rows<T> {
     let row = |index: usize| {
@@ -112,6 +160,18 @@ pub fn frozen_matrix<T: Field, const N: usize>(mixing: &[Vec<T>], matrices: &[SM
 /// The product of matrices that a word names, the first letter acting first: A_{σₙ} ⋯ A_{σ₁}.
 ///
 /// Source: derbez2000 (8), with its factors in the order in which they act.
+///
+/// Example: two matrices that do not commute.
+///
+/// ```
+/// use immaculate::steady::pair::product;
+/// use nalgebra::matrix;
+///
+/// let (a, b) = (matrix![0.0, 1.0; 0.0, 0.0], matrix![0.0, 0.0; 1.0, 0.0]);
+/// // The word a b: a acts first, so it stands on the right.
+/// assert_eq!(product(&[0, 1], &[a, b]), b * a);
+/// assert_eq!(b * a, matrix![0.0, 0.0; 0.0, 1.0]);
+/// ```
 ///
 /// Evidence: `a_product_of_two_stable_filters_is_unstable` (exact).
 pub fn product<T: Field, const N: usize>(word: &[usize], matrices: &[SMatrix<T, N, N>]) -> SMatrix<T, N, N> {

@@ -35,6 +35,23 @@ impl<T: Field, const N: usize> Perturbation<T, N> {
     /// The change of the predicted covariance, ΔP⁻ = F ΔP Fᵀ.
     ///
     /// Source: derbez2000, section 3.1, not numbered.
+    ///
+    /// Example: constant velocity over two seconds, whose velocity becomes less certain.
+    ///
+    /// ```
+    /// use immaculate::steady::perturbation::Perturbation;
+    /// use nalgebra::matrix;
+    ///
+    /// let filter = Perturbation {
+    ///     transition: matrix![1.0, 2.0; 0.0, 1.0],
+    ///     measurement: matrix![1.0, 0.0],
+    ///     measurement_variance: 1.0,
+    ///     predicted: matrix![1.0, 0.0; 0.0, 1.0],
+    ///     change: matrix![0.0, 0.0; 0.0, 3.0],
+    /// };
+    /// // A variance of 3 of the velocity becomes 2² · 3 of the position in two seconds.
+    /// assert_eq!(filter.predicted_change(), matrix![12.0, 6.0; 6.0, 3.0]);
+    /// ```
     pub fn predicted_change(&self) -> SMatrix<T, N, N> {
         &self.transition * &self.change * self.transition.transpose()
     }
@@ -57,6 +74,20 @@ impl<T: Field, const N: usize> Perturbation<T, N> {
     ///
     /// Why: A = (I − K H) F with the gain at the moved covariance.
     ///
+    /// Example: for F = H = R = P⁻ = ΔP = 1: A(ε) = 1 − (1 + ε)/(2 + ε), 1/2 and 1/3.
+    ///
+    /// ```
+    /// use immaculate::number::Rational;
+    /// use immaculate::steady::perturbation::Perturbation;
+    /// use nalgebra::matrix;
+    ///
+    /// let one = || matrix![Rational::new(1, 1)];
+    /// let [transition, predicted, change] = [one(), one(), one()];
+    /// let filter = Perturbation { transition, measurement: one(), measurement_variance: Rational::new(1, 1), predicted, change };
+    /// assert_eq!(filter.closed_loop(&Rational::new(0, 1)), matrix![Rational::new(1, 2)]);
+    /// assert_eq!(filter.closed_loop(&Rational::new(1, 1)), matrix![Rational::new(1, 3)]);
+    /// ```
+    ///
     /// Errata: the paper prints P₁₁ without its superscript.
     ///
     /// Evidence: `the_expansion_of_the_closed_loop_is_its_derivative` (symbolic).
@@ -76,6 +107,19 @@ impl<T: Field, const N: usize> Perturbation<T, N> {
     ///
     /// Why: d(P Hᵀ/(P₁₁ + R)) = ΔP Hᵀ/(P₁₁ + R) − P Hᵀ ΔP₁₁/(P₁₁ + R)², and K = P Hᵀ/(P₁₁ + R).
     ///
+    /// Example: for F = H = R = P⁻ = ΔP = 1: A(ε) = 1/(2 + ε), whose derivative at zero is −1/4; here (1/2 − 1)/2.
+    ///
+    /// ```
+    /// use immaculate::number::Rational;
+    /// use immaculate::steady::perturbation::Perturbation;
+    /// use nalgebra::matrix;
+    ///
+    /// let one = || matrix![Rational::new(1, 1)];
+    /// let [transition, predicted, change] = [one(), one(), one()];
+    /// let filter = Perturbation { transition, measurement: one(), measurement_variance: Rational::new(1, 1), predicted, change };
+    /// assert_eq!(filter.first_order(), matrix![Rational::new(-1, 4)]);
+    /// ```
+    ///
     /// Evidence: `the_expansion_of_the_closed_loop_is_its_derivative` (symbolic).
     pub fn first_order(&self) -> SMatrix<T, N, N> {
         let (along_gain, along_change) = self.corrections();
@@ -94,6 +138,19 @@ impl<T: Field, const N: usize> Perturbation<T, N> {
     /// Why: it agrees with [`Perturbation::closed_loop`] to first order and not beyond. With the same denominator, the one with ε, in both
     /// terms it would be no expansion but the exact value: [`Perturbation::exact_expansion`].
     ///
+    /// Example: for F = H = R = P⁻ = ΔP = 1 and ε = 1: 1/2 + 1/2 · 1/2 − 1 · 1/3, where the closed loop is 1/3.
+    ///
+    /// ```
+    /// use immaculate::number::Rational;
+    /// use immaculate::steady::perturbation::Perturbation;
+    /// use nalgebra::matrix;
+    ///
+    /// let one = || matrix![Rational::new(1, 1)];
+    /// let [transition, predicted, change] = [one(), one(), one()];
+    /// let filter = Perturbation { transition, measurement: one(), measurement_variance: Rational::new(1, 1), predicted, change };
+    /// assert_eq!(filter.printed_expansion(&Rational::new(1, 1)), matrix![Rational::new(5, 12)]);
+    /// ```
+    ///
     /// Evidence: `the_expansion_of_the_closed_loop_is_its_derivative` (symbolic).
     pub fn printed_expansion(&self, epsilon: &T) -> SMatrix<T, N, N> {
         let (along_gain, along_change) = self.corrections();
@@ -110,6 +167,19 @@ impl<T: Field, const N: usize> Perturbation<T, N> {
     /// ```
     ///
     /// Source: P⁻Hᵀ/(S + εδ) = K − K εδ/(S + εδ) with S = P⁻₁₁ + R and δ = (F ΔP Fᵀ)₁₁; found here.
+    ///
+    /// Example: for F = H = R = P⁻ = ΔP = 1 and ε = 1: 1/2 + (1/2 − 1)/3, the closed loop itself.
+    ///
+    /// ```
+    /// use immaculate::number::Rational;
+    /// use immaculate::steady::perturbation::Perturbation;
+    /// use nalgebra::matrix;
+    ///
+    /// let one = || matrix![Rational::new(1, 1)];
+    /// let [transition, predicted, change] = [one(), one(), one()];
+    /// let filter = Perturbation { transition, measurement: one(), measurement_variance: Rational::new(1, 1), predicted, change };
+    /// assert_eq!(filter.exact_expansion(&Rational::new(1, 1)), matrix![Rational::new(1, 3)]);
+    /// ```
     ///
     /// Evidence: `the_expansion_of_the_closed_loop_is_its_derivative` (symbolic).
     pub fn exact_expansion(&self, epsilon: &T) -> SMatrix<T, N, N> {
@@ -156,6 +226,16 @@ impl<T: Field, const N: usize> Perturbation<T, N> {
 ///
 /// Why: x̂ⁱ − x̂⁰ʲ = x̂ⁱ − μⁱ∣ʲ x̂ⁱ − μˡ∣ʲ x̂ˡ = μˡ∣ʲ (x̂ⁱ − x̂ˡ). Over both i with their weights it sums to μ¹∣ʲ μ²∣ʲ D.
 ///
+/// Example: estimates 0 and 4, mixed 3/4 to 1/4: the mixed one is 1, and the first is 1 away from it, (1/4 · 4)².
+///
+/// ```
+/// use immaculate::number::Rational;
+/// use immaculate::steady::perturbation::spread_term;
+/// use nalgebra::matrix;
+///
+/// assert_eq!(spread_term(&Rational::new(1, 4), &matrix![Rational::new(16, 1)]), matrix![Rational::new(1, 1)]);
+/// ```
+///
 /// Evidence: `the_spread_of_two_means_is_that_of_their_gap` (symbolic).
 pub fn spread_term<T: Field, const N: usize>(weight: &T, gap: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
     gap * (weight.clone() * weight.clone())
@@ -174,6 +254,21 @@ pub fn spread_term<T: Field, const N: usize>(weight: &T, gap: &SMatrix<T, N, N>)
 /// | μⁱ∣ʲ  | `mixing[j][i]` | R × R | mixing probabilities, inside the current mode as everywhere here      |
 /// | Pᵉʲ   | `errors[j]`    | N × N | true second moment of filter j's error                                |
 /// | i     | `mode`         |       | the mode whose covariance is mixed                                    |
+///
+/// Example: errors 1 and −1: each has the second moment 1, their difference 4. Mixed in halves, the spread is 1/4 · 4 and its "bound" 1/4 ·
+/// 1.
+///
+/// ```
+/// use immaculate::number::Rational;
+/// use immaculate::steady::perturbation::{printed_spread_bound, spread_term};
+/// use nalgebra::matrix;
+///
+/// let q = Rational::new;
+/// let mixing = vec![vec![q(1, 2), q(1, 2)]; 2];
+/// let bound = printed_spread_bound(&mixing, &[matrix![q(1, 1)], matrix![q(1, 1)]], 0);
+/// assert_eq!(bound, matrix![q(1, 4)]);
+/// assert_eq!(spread_term(&q(1, 2), &matrix![q(4, 1)]), matrix![q(1, 1)]);
+/// ```
 ///
 /// Errata: it is no bound. The difference of two estimates is not the error of one of them: Dⁱˡ = Pᵉⁱ + Pᵉˡ − C − Cᵀ with the
 /// covariance C of the two errors, and the paper keeps Pᵉˡ alone. For i = constant velocity that is the *small* one of the two. That the
@@ -201,6 +296,17 @@ pub fn printed_spread_bound<T: Field, const N: usize>(
 ///
 /// Source: 2eeᵀ + 2ffᵀ − (e − f)(e − f)ᵀ = (e + f)(e + f)ᵀ ⪰ 0; the factor 2 is reached for f = −e.
 ///
+/// Example: errors 1 and −1, mixed in halves: the spread is 1/4 · 4 = 1, and the bound 2 · 1/4 · (1 + 1) is reached.
+///
+/// ```
+/// use immaculate::number::Rational;
+/// use immaculate::steady::perturbation::spread_bound;
+/// use nalgebra::matrix;
+///
+/// let one = matrix![Rational::new(1, 1)];
+/// assert_eq!(spread_bound(&Rational::new(1, 2), [&one, &one]), one);
+/// ```
+///
 /// Evidence: `twice_both_errors_bound_the_spread` (symbolic), `the_printed_bound_of_the_spread_fails` (exact).
 pub fn spread_bound<T: Field, const N: usize>(weight: &T, errors: [&SMatrix<T, N, N>; 2]) -> SMatrix<T, N, N> {
     (errors[0] + errors[1]) * (T::integer(2) * weight.clone() * weight.clone())
@@ -222,6 +328,17 @@ pub fn spread_bound<T: Field, const N: usize>(weight: &T, errors: [&SMatrix<T, N
 /// Why: Bayes' rule. It is 1 − a at μ₁ = ½ and rises to 1 as mode 1 becomes certain, however close to one a is: who is almost surely in
 /// mode 1 and arrives in mode 2 has come from mode 1.
 ///
+/// Example: a = 19/20. Between equals the weight is 1 − a; with μ₁ = 19/20 it is 1/20 · 19/20 over twice as much.
+///
+/// ```
+/// use immaculate::number::Rational;
+/// use immaculate::steady::perturbation::{other_mode_weight, printed_weight};
+///
+/// let (q, stay) = (Rational::new, Rational::new(19, 20));
+/// assert_eq!(other_mode_weight(&stay, &q(1, 2)), printed_weight(&stay));
+/// assert_eq!(other_mode_weight(&stay, &q(19, 20)), q(1, 2));
+/// ```
+///
 /// Evidence: `the_weight_of_the_other_mode_is_small_only_between_equals` (symbolic, exact).
 pub fn other_mode_weight<T: Field>(stay: &T, probability: &T) -> T {
     let switch = T::one() - stay.clone();
@@ -235,6 +352,15 @@ pub fn other_mode_weight<T: Field>(stay: &T, probability: &T) -> T {
 ///
 /// Source: derbez2000, section 3.1, not numbered: "if p₁₂ = p₂₁ = 1 − a then one can show ε ≈ (1 − a)²".
 ///
+/// Example: a = 19/20.
+///
+/// ```
+/// use immaculate::number::Rational;
+/// use immaculate::steady::perturbation::printed_weight;
+///
+/// assert_eq!(printed_weight(&Rational::new(19, 20)), Rational::new(1, 20)); // whatever the mode probabilities
+/// ```
+///
 /// Errata: true for μ₁ = μ₂ = ½ alone. With a = .95 and μ₁ = .95 the weight is ½ and ε is ¼, a hundred times the printed .0025. The
 /// perturbation is not small exactly when one mode dominates, which is when the filter does what it is for.
 ///
@@ -246,6 +372,16 @@ pub fn printed_weight<T: Field>(stay: &T) -> T {
 /// The second moment of a vector of errors with this mean and covariance: C + m mᵀ.
 ///
 /// Source: the definition of a covariance.
+///
+/// Example: I + [1, 2]ᵀ [1, 2].
+///
+/// ```
+/// use immaculate::steady::perturbation::second_moment;
+/// use nalgebra::{matrix, vector};
+///
+/// let moment = second_moment(&vector![1.0, 2.0], &matrix![1.0, 0.0; 0.0, 1.0]);
+/// assert_eq!(moment, matrix![2.0, 2.0; 2.0, 5.0]);
+/// ```
 pub fn second_moment<T: Field, const N: usize>(
     mean: &SVector<T, N>,
     covariance: &SMatrix<T, N, N>,

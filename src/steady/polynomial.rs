@@ -15,6 +15,15 @@ pub type Rows<T> = Vec<Vec<T>>;
 /// The rows of a matrix.
 ///
 /// Source: a change of form.
+///
+/// Example: two rows of two.
+///
+/// ```
+/// use immaculate::steady::polynomial::rows_of;
+/// use nalgebra::matrix;
+///
+/// assert_eq!(rows_of(&matrix![1.0, 2.0; 3.0, 4.0]), [[1.0, 2.0], [3.0, 4.0]]);
+/// ```
 pub fn rows_of<T: Field, const R: usize, const C: usize>(matrix: &SMatrix<T, R, C>) -> Rows<T> {
     let row = |i: usize| (0..C).map(|j| matrix[(i, j)].clone()).collect();
     (0..R).map(row).collect()
@@ -27,6 +36,17 @@ pub fn rows_of<T: Field, const R: usize, const C: usize>(matrix: &SMatrix<T, R, 
 /// ```
 ///
 /// Source: Faddeev and Leverrier; Gantmacher, The Theory of Matrices, chapter IV, section 5.
+///
+/// Example: (λ − 2)(λ − 3) = 6 − 5λ + λ².
+///
+/// ```
+/// use immaculate::number::{Field, Rational};
+/// use immaculate::steady::polynomial::{characteristic_polynomial, rows_of};
+/// use nalgebra::matrix;
+///
+/// let matrix = matrix![2, 1; 0, 3].map(Rational::integer);
+/// assert_eq!(characteristic_polynomial(&rows_of(&matrix)), [6, -5, 1].map(Rational::integer));
+/// ```
 ///
 /// Evidence: `a_matrix_is_a_root_of_its_characteristic_polynomial` (symbolic).
 pub fn characteristic_polynomial<T: Field>(matrix: &Rows<T>) -> Vec<T> {
@@ -80,6 +100,18 @@ fn times<T: Field>(left: &Rows<T>, right: &Rows<T>) -> Rows<T> {
 ///
 /// Source: Schur 1917, Cohn 1922.
 ///
+/// Example: ½ − λ + λ² has the roots (1 ± i)/2, whose square of the magnitude is ½.
+///
+/// ```
+/// use immaculate::number::Rational;
+/// use immaculate::steady::polynomial::is_stable_polynomial;
+///
+/// let q = Rational::new;
+/// assert_eq!(is_stable_polynomial(&[q(1, 2), q(-1, 1), q(1, 1)]), Some(true));
+/// // 1 − 5/2 λ + λ² has ½ and 2.
+/// assert_eq!(is_stable_polynomial(&[q(1, 1), q(-5, 2), q(1, 1)]), Some(false));
+/// ```
+///
 /// Evidence: `the_schur_cohn_test_knows_where_roots_are` (exact).
 pub fn is_stable_polynomial<T: Field + PartialOrd>(coefficients: &[T]) -> Option<bool> {
     let Some((highest, rest)) = coefficients.split_last().filter(|(_, rest)| !rest.is_empty()) else {
@@ -100,6 +132,18 @@ pub fn is_stable_polynomial<T: Field + PartialOrd>(coefficients: &[T]) -> Option
 /// Whether the spectral radius of a matrix is below a bound; none if the number system cannot tell.
 ///
 /// Source: the roots of det(λI − A) are bound times those of the polynomial with coefficients cₖ boundᵏ.
+///
+/// Example: [0 1; −½ 1] has the eigenvalues (1 ± i)/2 of magnitude √½ = 0.707….
+///
+/// ```
+/// use immaculate::number::Rational;
+/// use immaculate::steady::polynomial::has_radius_below;
+///
+/// let q = Rational::new;
+/// let rows = vec![vec![q(0, 1), q(1, 1)], vec![q(-1, 2), q(1, 1)]];
+/// assert_eq!(has_radius_below(&rows, &q(71, 100)), Some(true));
+/// assert_eq!(has_radius_below(&rows, &q(70, 100)), Some(false));
+/// ```
 ///
 /// Evidence: `the_schur_cohn_test_knows_where_roots_are` (exact).
 pub fn has_radius_below<T: Field + PartialOrd>(matrix: &Rows<T>, bound: &T) -> Option<bool> {

@@ -18,6 +18,19 @@ use std::fmt::Write;
 ///
 /// Source: Kalman 1963; the subspace is carried into itself by F (Cayley-Hamilton).
 ///
+/// Example: constant velocity. Who sees the position sees the velocity too; who sees the velocity alone misses a position that stays: λ −
+/// 1.
+///
+/// ```
+/// use immaculate::number::{Field, Rational};
+/// use immaculate::steady::reach::unseen_part;
+///
+/// let rows = |rows: &[[i64; 2]]| rows.iter().map(|row| row.map(Rational::integer).to_vec()).collect();
+/// let motion = rows(&[[1, 1], [0, 1]]);
+/// assert_eq!(unseen_part(&motion, &rows(&[[1, 0]])), [1].map(Rational::integer));
+/// assert_eq!(unseen_part(&motion, &rows(&[[0, 1]])), [-1, 1].map(Rational::integer));
+/// ```
+///
 /// Evidence: `what_is_not_seen_and_does_not_decay_is_named` (exact).
 pub fn unseen_part(motion: &Rows<Rational>, sensor: &Rows<Rational>) -> Vec<Rational> {
     let n = motion.len();
@@ -83,6 +96,15 @@ fn null_space(mut rows: Rows<Rational>, n: usize) -> (Rows<Rational>, Vec<usize>
 /// A polynomial in λ for people, highest power first.
 ///
 /// Source: for messages.
+///
+/// Example: the highest power first, and a true minus.
+///
+/// ```
+/// use immaculate::number::{Field, Rational};
+/// use immaculate::steady::reach::polynomial_text;
+///
+/// assert_eq!(polynomial_text(&[6, -5, 1].map(Rational::integer)), "λ^2 − 5λ + 6");
+/// ```
 pub fn polynomial_text(coefficients: &[Rational]) -> String {
     let mut text = String::new();
     for (power, coefficient) in coefficients.iter().enumerate().rev() {

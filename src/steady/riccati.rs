@@ -51,6 +51,25 @@ impl<T: Field, const N: usize, const M: usize> Riccati<T, N, M> {
     ///
     /// Why: update and prediction of the Kalman filter; covariances do not depend on what is measured.
     ///
+    /// Example: constant velocity with t = 1, q = 1 and R = 1, whose steady gain has α = 3/4 and β = 1/2.
+    ///
+    /// ```
+    /// use immaculate::number::{Field, Rational};
+    /// use immaculate::steady::riccati::Riccati;
+    /// use nalgebra::matrix;
+    ///
+    /// let whole = Rational::integer;
+    /// let filter = Riccati {
+    ///     transition: matrix![1, 1; 0, 1].map(whole),
+    ///     measurement: matrix![1, 0].map(whole),
+    ///     noise: matrix![1, 2; 2, 4].map(|entry| Rational::new(entry, 4)), // [½, 1]ᵀ [½, 1]
+    ///     measurement_noise: matrix![1].map(whole),
+    /// };
+    /// // P = [3 2; 2 2]: S = 4, K = [3/4, 1/2]ᵀ, P − K S Kᵀ = [3/4 1/2; 1/2 1]. Moved, [11/4 3/2; 3/2 1]; with the noise, P again.
+    /// let steady = matrix![3, 2; 2, 2].map(whole);
+    /// assert_eq!(filter.next(&steady), steady);
+    /// ```
+    ///
     /// Evidence: `the_alpha_beta_gain_solves_the_riccati_equation` (symbolic).
     #[must_use]
     pub fn next(&self, predicted: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
@@ -61,6 +80,25 @@ impl<T: Field, const N: usize, const M: usize> Riccati<T, N, M> {
     }
 
     /// The gain at a predicted covariance, K = P Hᵀ (H P Hᵀ + R)⁻¹ — derbez2000 (2), (4).
+    ///
+    /// Example: constant velocity at the predicted covariance of the example of [`Riccati::next`]; the process noise plays no part.
+    ///
+    /// ```
+    /// use immaculate::number::{Field, Rational};
+    /// use immaculate::steady::riccati::Riccati;
+    /// use nalgebra::{matrix, vector};
+    ///
+    /// let whole = Rational::integer;
+    /// let filter = Riccati {
+    ///     transition: matrix![1, 1; 0, 1].map(whole),
+    ///     measurement: matrix![1, 0].map(whole),
+    ///     noise: matrix![0, 0; 0, 0].map(whole),
+    ///     measurement_noise: matrix![1].map(whole),
+    /// };
+    /// // The first column of P over S = 3 + 1.
+    /// let gain = filter.gain(&matrix![3, 2; 2, 2].map(whole));
+    /// assert_eq!(gain, vector![Rational::new(3, 4), Rational::new(1, 2)]);
+    /// ```
     pub fn gain(&self, predicted: &SMatrix<T, N, N>) -> SMatrix<T, N, M> {
         let innovation = kalman::innovation_covariance(&self.measurement, predicted, &self.measurement_noise);
         update::gain(
@@ -72,13 +110,33 @@ impl<T: Field, const N: usize, const M: usize> Riccati<T, N, M> {
     /// The matrix that carries the filter's error from one update to the next, A = (I − K H) F.
     ///
     /// Source: derbez2000, section 2.2, the definition of A₊ below (7).
+    ///
+    /// Example: constant velocity with the gain of the example of [`Riccati::gain`].
+    ///
+    /// ```
+    /// use immaculate::number::{Field, Rational};
+    /// use immaculate::steady::riccati::Riccati;
+    /// use nalgebra::{matrix, vector};
+    ///
+    /// let whole = Rational::integer;
+    /// let filter = Riccati {
+    ///     transition: matrix![1, 1; 0, 1].map(whole),
+    ///     measurement: matrix![1, 0].map(whole),
+    ///     noise: matrix![0, 0; 0, 0].map(whole),
+    ///     measurement_noise: matrix![1].map(whole),
+    /// };
+    /// // K = [3/4, 1/2]ᵀ: I − K H = [1/4 0; −1/2 1], times F.
+    /// let gain = vector![Rational::new(3, 4), Rational::new(1, 2)];
+    /// let carried = matrix![1, 1; -2, 2].map(|entry| Rational::new(entry, 4));
+    /// assert_eq!(filter.closed_loop(&gain), carried);
+    /// ```
     pub fn closed_loop(&self, gain: &SMatrix<T, N, M>) -> SMatrix<T, N, N> {
         (SMatrix::identity() - gain * &self.measurement) * &self.transition
     }
 }
 
 impl<T: Field + PartialOrd, const N: usize, const M: usize> Riccati<T, N, M> {
-    /// The predicted covariance after 2ᵏ steps of the recursion from Q, for k doublings; none where it cannot be computed.
+    /// The predicted covariance after 2ᵏ steps of the recursion from zero, for k doublings; none where it cannot be computed.
     ///
     /// ```text
     /// A₀ = Fᵀ, G₀ = Hᵀ R⁻¹ H, P₀ = Q
@@ -86,8 +144,23 @@ impl<T: Field + PartialOrd, const N: usize, const M: usize> Riccati<T, N, M> {
     /// ```
     ///
     /// Why: a step is P ↦ Q + F P (I + G P)⁻¹ Fᵀ, a fractional map, and the composition of two maps of this form is again of this form.
+    /// The first step from zero gives Q.
     ///
     /// Source: Anderson 1978; Chu, Fan, Lin and Wang 2004.
+    ///
+    /// Example: for F = H = Q = R = 1: f(P) = P/(P + 1) + 1 goes 0, 1, 3/2, 8/5, 21/13: two Fibonacci numbers further at each step.
+    ///
+    /// ```
+    /// use immaculate::number::Rational;
+    /// use immaculate::steady::riccati::Riccati;
+    /// use nalgebra::matrix;
+    ///
+    /// let one = matrix![Rational::new(1, 1)];
+    /// let filter = Riccati { transition: one.clone(), measurement: one.clone(), noise: one.clone(), measurement_noise: one };
+    /// assert_eq!(filter.doubled(0).unwrap()[0], Rational::new(1, 1));
+    /// assert_eq!(filter.doubled(1).unwrap()[0], Rational::new(3, 2));
+    /// assert_eq!(filter.doubled(2).unwrap()[0], Rational::new(21, 13));
+    /// ```
     ///
     /// Evidence: `doubling_and_recursion_have_the_same_limit` (exact).
     pub fn doubled(&self, doublings: usize) -> Option<SMatrix<T, N, N>> {
@@ -130,6 +203,22 @@ fn inverse<T: Field + PartialOrd, const N: usize>(matrix: &SMatrix<T, N, N>) -> 
 ///   would be the greatest too.
 ///
 /// Source: Lancaster and Rodman, Algebraic Riccati Equations, 1995, for the monotonicity; the certificate is put together here.
+///
+/// Example: for F = H = Q = R = 1: P = P/(P + 1) + 1 is the golden section, 1.618…, and lies between 8/5 and 5/3: f(8/5) = 21/13 > 8/5 and
+/// f(5/3) = 13/8 < 5/3.
+///
+/// ```
+/// use immaculate::number::Rational;
+/// use immaculate::steady::riccati::{Riccati, SteadyState};
+/// use nalgebra::matrix;
+///
+/// let one = matrix![Rational::new(1, 1)];
+/// let filter = Riccati { transition: one.clone(), measurement: one.clone(), noise: one.clone(), measurement_noise: one };
+/// let between = |lower, upper| SteadyState { lower: matrix![lower], upper: matrix![upper] };
+/// assert!(between(Rational::new(8, 5), Rational::new(5, 3)).check(&filter).is_ok());
+/// // 13/8 = 1.625 is above it: f(13/8) = 34/21 < 13/8.
+/// assert!(between(Rational::new(13, 8), Rational::new(5, 3)).check(&filter).is_err());
+/// ```
 ///
 /// Evidence: `a_steady_state_is_proven_by_two_bounds`, `a_spoilt_bound_proves_nothing` (exact).
 #[derive(Debug, Clone, PartialEq)]
@@ -206,6 +295,21 @@ impl<const N: usize> SteadyState<N> {
     /// The middle comes from [`Riccati::doubled`] on enclosures, the distance from the Lyapunov equation W = A W Aᵀ + I of the closed loop
     /// there: f(P ± εW) is about P ± ε(W − I). Whatever is found is checked.
     ///
+    /// Example: F = H = R = 1, with Q = 1 and with Q = 0.
+    ///
+    /// ```
+    /// use immaculate::number::Rational;
+    /// use immaculate::steady::riccati::{Riccati, SteadyState};
+    /// use nalgebra::matrix;
+    ///
+    /// let number = |value| matrix![Rational::new(value, 1)];
+    /// let filter = |noise| Riccati { transition: number(1), measurement: number(1), noise: number(noise), measurement_noise: number(1) };
+    /// assert!(SteadyState::certify(&filter(1), 64).is_ok());
+    /// // Without process noise the filter ends up believing itself, and says why there is no proof.
+    /// let reason = SteadyState::certify(&filter(0), 64).unwrap_err().to_string();
+    /// assert!(reason.contains("(F, Q) is not stabilisable"));
+    /// ```
+    ///
     /// # Errors
     ///
     /// [`NoSteadyState`] with the reason.
@@ -244,6 +348,20 @@ impl<const N: usize> SteadyState<N> {
     /// An enclosure of an entry of the solution, at the precision of the scope.
     ///
     /// Source: 0 ⪯ P − L ⪯ U − L, and an entry of a semidefinite matrix is no greater than the root of the product of its diagonal entries.
+    ///
+    /// Example: 8/5 ± (5/3 − 8/5): it holds 13/8, whose distance from 8/5 is 1/40 < 1/15, and does not hold 2.
+    ///
+    /// ```
+    /// use immaculate::number::{Enclosure, Rational};
+    /// use immaculate::steady::riccati::SteadyState;
+    /// use nalgebra::matrix;
+    ///
+    /// let bounds = SteadyState { lower: matrix![Rational::new(8, 5)], upper: matrix![Rational::new(5, 3)] };
+    /// Enclosure::with_precision(64, || {
+    ///     assert!(bounds.entry(0, 0).contains(&Rational::new(13, 8)));
+    ///     assert!(!bounds.entry(0, 0).contains(&Rational::new(2, 1)));
+    /// });
+    /// ```
     pub fn entry(&self, i: usize, j: usize) -> Enclosure {
         let apart = |i: usize| self.upper[(i, i)].clone() - self.lower[(i, i)].clone();
         // The greater diagonal entry bounds the root of the product.
@@ -256,6 +374,21 @@ impl<const N: usize> SteadyState<N> {
     /// The steady gain, at the precision of the scope.
     ///
     /// Source: derbez2000 (2), (4).
+    ///
+    /// Example: for F = H = Q = R = 1: P is the golden section φ, and K = φ/(φ + 1) = 1/φ = 0.618….
+    ///
+    /// ```
+    /// use immaculate::number::{Enclosure, Rational};
+    /// use immaculate::steady::riccati::{Riccati, SteadyState};
+    /// use nalgebra::matrix;
+    ///
+    /// let one = matrix![Rational::new(1, 1)];
+    /// let filter = Riccati { transition: one.clone(), measurement: one.clone(), noise: one.clone(), measurement_noise: one };
+    /// let steady = SteadyState::certify(&filter, 64).unwrap();
+    /// Enclosure::with_precision(128, || {
+    ///     assert_eq!(steady.gain(&filter)[0].to_decimal(6).unwrap(), "6.18034e-1");
+    /// });
+    /// ```
     pub fn gain<const M: usize>(&self, problem: &Riccati<Rational, N, M>) -> SMatrix<Enclosure, N, M> {
         let solution = SMatrix::<Enclosure, N, N>::from_fn(|i, j| self.entry(i, j));
         problem.map(Enclosure::rational).gain(&solution)

@@ -136,6 +136,16 @@ impl Grid {
     /// Figure 1: both process noises 5, R from 0.05 to 0.5, a from 0 to 95. The spacing is not printed.
     ///
     /// Source: derbez2000, figure 1.
+    ///
+    /// Example: ten rows of twenty columns.
+    ///
+    /// ```
+    /// use immaculate::steady::simulated::Grid;
+    ///
+    /// let grid = Grid::figure_1(2.0);
+    /// assert_eq!((grid.rows.len(), grid.columns.len(), grid.settings.len()), (10, 20, 200));
+    /// assert_eq!((grid.settings[1].measurement_variance, grid.settings[1].acceleration), (0.05, 5.0));
+    /// ```
     pub fn figure_1(interval: f64) -> Self {
         let rows: Vec<f64> = (1..=10).map(|k| f64::from(5 * k) / 100.0).collect();
         Self::new("R (m²)", rows, |r, acceleration| Setting {
@@ -150,6 +160,16 @@ impl Grid {
     /// Figure 2: R = 0.05, process noise of constant velocity from 2 to 40, of constant acceleration 5, a from 0 to 95.
     ///
     /// Source: derbez2000, figure 2.
+    ///
+    /// Example: twenty rows of twenty columns.
+    ///
+    /// ```
+    /// use immaculate::steady::simulated::Grid;
+    ///
+    /// let grid = Grid::figure_2(2.0);
+    /// assert_eq!((grid.rows.len(), grid.columns.len(), grid.settings.len()), (20, 20, 400));
+    /// assert_eq!(grid.settings[0].noises, [2.0, 5.0]);
+    /// ```
     pub fn figure_2(interval: f64) -> Self {
         let rows: Vec<f64> = (1..=20).map(|k| f64::from(2 * k)).collect();
         Self::new("q_v (m²/s⁴)", rows, |q, acceleration| Setting {
@@ -178,6 +198,21 @@ impl Grid {
     /// 100 (predicted − simulated)/simulated, of the traces, row by row; not a number where there is no prediction.
     ///
     /// `noise` gives the standard normal numbers of a grid point's run.
+    ///
+    /// Example: one point of figure 1, at rest, with a noise that is +1 and −1 in turn.
+    ///
+    /// ```
+    /// use immaculate::steady::long_term::{Form, predict};
+    /// use immaculate::steady::simulated::{Grid, Start, simulate};
+    ///
+    /// let in_turn = || { let mut sign = -1.0; move || { sign = -sign; sign } };
+    /// let mut grid = Grid::figure_1(2.0);
+    /// grid.settings.truncate(1);
+    /// let percent = grid.percentages(Form::Corrected, Start::AtTheTruth, |_| in_turn()).unwrap()[0];
+    /// let simulated = simulate(&grid.settings[0], Start::AtTheTruth, in_turn()).unwrap().total();
+    /// let predicted = predict(&grid.settings[0], Form::Corrected).unwrap().total();
+    /// assert_eq!(percent, 100.0 * (predicted - simulated) / simulated);
+    /// ```
     ///
     /// # Errors
     ///

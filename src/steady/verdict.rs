@@ -131,6 +131,17 @@ impl Filters {
     }
 
     /// Decides whether the filters are stable together.
+    ///
+    /// Example: each is stable for every root in (0, 1); these two are not together: v² a grows.
+    ///
+    /// ```
+    /// use immaculate::number::Rational;
+    /// use immaculate::steady::verdict::{Depth, Filters, Verdict, word_text};
+    ///
+    /// let filters = Filters::Roots([Rational::new(3, 4), Rational::new(1, 6)]);
+    /// let Verdict::Unstable(product) = filters.decide(Depth::default()) else { panic!("they are unstable") };
+    /// assert_eq!(word_text(&product.word), "vva");
+    /// ```
     pub fn decide(&self, depth: Depth) -> Verdict {
         let matrices = self.in_doubles();
         let (word, growth) = search::fastest_word(&matrices, depth.word.min(SHORT));

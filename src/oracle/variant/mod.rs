@@ -235,6 +235,15 @@ pub fn read(text: &str) -> Result<Vec<Variant>, toml::de::Error> {
 
 /// All variants, in the order of `spec/variants.toml`. The file is part of the program, and a test reads it: one that could not be read
 /// would leave the catalogue empty.
+///
+/// Example: the mistake that leaves out the spread of the means.
+///
+/// ```
+/// use immaculate::oracle::variant::{Kind, catalogue};
+///
+/// let variant = catalogue().iter().find(|variant| variant.id == "mixed-spread-omitted").unwrap();
+/// assert_eq!(variant.kind, Kind::Mistake);
+/// ```
 pub fn catalogue() -> &'static [Variant] {
     static CATALOGUE: LazyLock<Vec<Variant>> =
         LazyLock::new(|| read(include_str!("../../../spec/variants.toml")).unwrap_or_default());

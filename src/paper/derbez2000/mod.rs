@@ -1,7 +1,31 @@
 //! Derbez, Rémillard and Jouan 2000: an IMM filter of constant velocity and constant acceleration whose gains are fixed.
 //!
-//! After this folder the reader knows the paper's simulations, with everything that they leave open, and what becomes of its claims
-//! ([`claims`]).
+//! After this folder the reader knows where each equation of the paper is in the code, its simulations with everything that they leave
+//! open, and what becomes of its claims ([`claims`]).
+//!
+//! The paper in its own order, section by section:
+//!
+//! - 2.1 the IMM algorithm, (1)-(4): [`mixture_covariance`](crate::gaussian::mixture_covariance), [`kalman`](crate::filter::kalman) and
+//!   [`update`](crate::filter::update), [`mixing_probability`](crate::imm::probability::mixing_probability),
+//!   [`innovation_covariance`](crate::filter::kalman::innovation_covariance)
+//! - 2.2 motion, (5), (6): [`embedded_constant_velocity`](crate::model::acceleration::embedded_constant_velocity),
+//!   [`acceleration_part`](crate::model::acceleration::acceleration_part),
+//!   [`constant_acceleration`](crate::model::acceleration::constant_acceleration)
+//! - 2.2 proposition, (7): [`Mismatch`](crate::steady::mismatch::Mismatch), whose
+//!   [`long_term_error`](crate::steady::mismatch::Mismatch::long_term_error) it is
+//! - 2.2 theorem: [`instances`]: what refutes it, and what holds in its place
+//! - 2.2 algorithm, figures 1 and 2: [`predict`](crate::steady::long_term::predict), [`Grid`](crate::steady::simulated::Grid)
+//! - 2.2 remark 1: [`remark_1_matrix`](crate::steady::pair::remark_1_matrix), [`frozen_matrix`](crate::steady::pair::frozen_matrix)
+//! - 2.2 the recursion undone, (8): [`unrolled`](crate::steady::unrolled::unrolled)
+//! - 3 fixed gains: [`gains`](crate::steady::gains), [`riccati`](crate::steady::riccati), [`fixed_gain`](crate::filter::fixed_gain)
+//! - 3.1 moment matching: [`perturbation`](crate::steady::perturbation)
+//! - 3.2 coordinates: [`radar`], [`scenario::Coordinates`]
+//! - 4 simulations, tables 1 and 2: [`path`], [`contestants`], [`scenario`](mod@scenario), [`operations`](crate::steady::operations),
+//!   [`search`]
+//! - 5 stability of the whole: [`verdict`](crate::steady::verdict), [`map`](crate::steady::map)
+//! - the claims: [`claims::judge`]
+//!
+//! The files of this folder:
 //!
 //! - [`path`]: where the target goes in scenarios 1 and 2;
 //! - [`radar`]: range and bearing, and the positions that are made of them;

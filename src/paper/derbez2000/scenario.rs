@@ -325,6 +325,18 @@ impl Coordinates {
     ///
     /// Source: the accelerations along and across the line of sight, r̈ − r θ̇² and r θ̈ + 2 ṙ θ̇.
     ///
+    /// Example: at (2, 0) with the velocity (0, 4) and no acceleration: θ̇ = 4/2, r̈ = 2 · 2² = 8, and nothing else.
+    ///
+    /// ```
+    /// use immaculate::paper::derbez2000::scenario::Coordinates;
+    /// use nalgebra::Vector3;
+    ///
+    /// let place = [Vector3::new(2.0, 0.0, 0.0), Vector3::new(0.0, 4.0, 0.0)];
+    /// let [range, bearing] = Coordinates::Polar.of(&place);
+    /// assert_eq!(range, Vector3::new(2.0, 0.0, 8.0));
+    /// assert_eq!(bearing, Vector3::new(0.0, 2.0, 0.0));
+    /// ```
+    ///
     /// Evidence: `range_and_bearing_move_as_their_derivatives_say`.
     pub fn of(self, place: &Place) -> Place {
         if self == Self::Cartesian {

@@ -1,7 +1,36 @@
 //! Liu and Wu 2017: the IMM filter with fifth-degree spherical simplex-radial cubature Kalman filters.
 //!
-//! After this folder the reader knows the paper's simulation, in the order of its section 4, with everything that it leaves open, and
-//! what becomes of its claims ([`claims`]).
+//! After this folder the reader knows where each equation of the paper is in the code, its simulation with everything that it leaves open,
+//! and what becomes of its claims ([`claims`]).
+//!
+//! The paper in its own order, section by section:
+//!
+//! - 2 motion and measurement, (1): [`Mode`](crate::model::motion::Mode), [`Measurement`](crate::model::Measurement)
+//! - 2.1 the integral, (2), (3): the head of [`crate::rule`]
+//! - 2.1.1 spherical rule, (4)-(7): [`sphere_vertex_weight`](crate::rule::simplex::sphere_vertex_weight),
+//!   [`sphere_edge_weight`](crate::rule::simplex::sphere_edge_weight), [`vertices`](crate::rule::simplex::vertices),
+//!   [`edge_midpoints`](crate::rule::simplex::edge_midpoints)
+//! - 2.1.2 radial rule, (8)-(10): [`radial_rule`](crate::rule::simplex::radial_rule)
+//! - 2.1.3 the rule, (11): [`simplex`](crate::rule::simplex::simplex), [printed](crate::rule::printed::edge_weight_11) with half of a
+//!   weight
+//! - 3, step 1, interaction, (12), (13): [`mixture_mean`](crate::gaussian::mixture_mean),
+//!   [`mixture_covariance`](crate::gaussian::mixture_covariance), [`mixing_probability`](crate::imm::probability::mixing_probability)
+//! - 3, step 2 A, time update, (14)-(17): [`point`](crate::filter::cubature::point), [`edge_weight`](crate::rule::simplex::edge_weight),
+//!   [printed](crate::rule::printed::edge_weight_16) as an n-th of it, [`weighted_mean`](crate::filter::cubature::weighted_mean),
+//!   [`weighted_covariance`](crate::filter::cubature::weighted_covariance)
+//! - 3, step 2 B, measurement update, (18)-(20): [`Measurement::of`](crate::model::Measurement::of),
+//!   [`innovation_covariance`](crate::filter::cubature::innovation_covariance),
+//!   [`cross_covariance`](crate::filter::cubature::cross_covariance), [`gain`](crate::filter::update::gain) and the rest of
+//!   [`update`](crate::filter::update)
+//! - 3, step 3, probabilities, (21), (22): [`log_density`](crate::gaussian::log_density),
+//!   [`mode_probability`](crate::imm::probability::mode_probability); as printed in [`imm::printed`](crate::imm::printed)
+//! - 3, step 4, output, (23), (24): the mixture again
+//! - 4.1 models, (25)-(32): [`constant_velocity`](crate::model::motion::constant_velocity),
+//!   [`coordinated_turn`](crate::model::motion::coordinated_turn), [`integrated_noise`](crate::model::motion::integrated_noise),
+//!   [`Measurement::Polar`](crate::model::Measurement::Polar), [`TRANSITION`], [`scenario`]
+//! - 4.2 figures, table 1, (33), (34): [`root_mean_square`](crate::statistics::rmse::root_mean_square),
+//!   [`accumulated`](crate::statistics::rmse::accumulated), [`Reproduction`](super::result::Reproduction)
+//! - the claims: [`claims::judge`]
 //!
 //! The motion is linear, the measurement is range and bearing: only the update differs from a Kalman filter's, and by how much the four
 //! filters can differ from each other is a question of how curved the measurement is over the width of an estimate.
@@ -45,6 +74,17 @@ pub const INITIAL_PROBABILITIES: [f64; 3] = [0.8, 0.1, 0.1];
 /// The transition matrix of the Markov chain — liu2017 (32).
 ///
 /// Rows are the modes at k − 1: constant velocity, left turn, right turn.
+///
+/// Example: from constant velocity: 0.95 stay, 0.025 into either turn.
+///
+/// ```
+/// use immaculate::imm::probability::predicted_mode_probability;
+/// use immaculate::paper::liu2017::TRANSITION;
+///
+/// let chain = TRANSITION.map(Vec::from);
+/// let predicted = [0, 1, 2].map(|mode| predicted_mode_probability(&chain, &[1.0, 0.0, 0.0], mode));
+/// assert_eq!(predicted, [0.95, 0.025, 0.025]);
+/// ```
 pub const TRANSITION: [[f64; 3]; 3] = [[0.95, 0.025, 0.025], [0.025, 0.95, 0.025], [0.025, 0.025, 0.95]];
 
 /// The scenario under the given choices.

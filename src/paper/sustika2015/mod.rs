@@ -1,6 +1,31 @@
 //! Sustika and Suryana 2015: IMM filters of a coastal radar, with converted measurements or with unscented points.
 //!
-//! After this folder the reader knows the paper's simulations, with everything that they leave open, and what becomes of its claims.
+//! After this folder the reader knows where each equation of the paper is in the code, its simulations with everything that they leave
+//! open, and what becomes of its claims ([`claims`]).
+//!
+//! The paper in its own order, section by section. Its formulas are lost in the available copy and are put together again from what is
+//! left:
+//!
+//! - 2.1 model, (1)-(4): [`wiener`](crate::model::wiener), [`Measurement::of`](crate::model::Measurement::of),
+//!   [`Problem`](crate::imm::Problem)
+//! - 2.2 interaction, (5)-(8): [`predicted_mode_probability`](crate::imm::probability::predicted_mode_probability),
+//!   [`mixing_probability`](crate::imm::probability::mixing_probability), [`mixture_mean`](crate::gaussian::mixture_mean),
+//!   [`mixture_covariance`](crate::gaussian::mixture_covariance); of unequal states [`unequal`](crate::imm::unequal)
+//! - 2.2 probabilities, output, (9)-(13): [`log_density`](crate::gaussian::log_density), [`evidence`](crate::imm::probability::evidence),
+//!   [`mode_probability`](crate::imm::probability::mode_probability), and the mixture again
+//! - 3.1 Kalman filter, (14)-(19): [`kalman`](crate::filter::kalman), [`update`](crate::filter::update)
+//! - 3.1 converted measurement, (20)-(26): [`converted_position`](crate::model::conversion::converted_position),
+//!   [`converted_covariance`](crate::model::conversion::converted_covariance)
+//! - 3.2 unscented filter, (27)-(36): [`unscented`](crate::rule::unscented::unscented), [`cubature`](crate::filter::cubature),
+//!   [`update`](crate::filter::update)
+//! - 4 scenarios, tables 1 to 3: [`truth`], [`contestants`], [`scenario`](mod@scenario)
+//! - 4 measure, (37)-(39): [`percentage_fit_error`](crate::statistics::fit_error::percentage_fit_error),
+//!   [`position_fit_error`](crate::statistics::fit_error::position_fit_error)
+//! - 5.1, 5.2 tables 4 and 5, figures: [`outcome`], [`sweep`], [`divergence`]
+//! - 5.3 cost, table 6: [`operations`], [`reasoning`]
+//! - the claims: [`claims::judge`]
+//!
+//! The files of this folder:
 //!
 //! - [`truth`]: where the target goes, and range and bearing of it;
 //! - [`contestants`]: the two filters that are compared, and the unscented one with bearings that are never wrapped;
@@ -75,6 +100,15 @@ pub const DEGREE: f64 = std::f64::consts::PI / 180.0;
 /// prints for the manoeuvres.
 ///
 /// Source: Hartikainen, Solin and Särkkä 2011, the example of an IMM filter with constant velocity and constant acceleration.
+///
+/// Example: what the paper prints for its manoeuvres ends where those of the toolbox begin.
+///
+/// ```
+/// use immaculate::paper::sustika2015::{MANOEUVRING_SECONDS, TOOLBOX_SECONDS};
+///
+/// assert_eq!(MANOEUVRING_SECONDS, [[1, 50], [71, 120]]);
+/// assert!((0..2).all(|turn| MANOEUVRING_SECONDS[turn][1] + 1 == TOOLBOX_SECONDS[turn][0]));
+/// ```
 pub const TOOLBOX_SECONDS: [[usize; 2]; 2] = [[51, 70], [121, 150]];
 
 /// The simulation under the given choices.

@@ -37,6 +37,17 @@ type Table = Equations<Counting, 6, 2>;
 ///
 /// Source: sustika2015, section 5.3, which compares execution times.
 ///
+/// Example: points cost more than one converted position, and points for a linear motion more again, for the same estimate.
+///
+/// ```
+/// use immaculate::number::Convention;
+/// use immaculate::paper::sustika2015::operations::{Filter, cycle};
+///
+/// let cost = |filter| cycle(filter, Convention::Dense).total(Convention::Dense);
+/// assert!(cost(Filter::Converted) < cost(Filter::Unscented));
+/// assert!(cost(Filter::Unscented) < cost(Filter::UnscentedTwice));
+/// ```
+///
 /// Evidence: `both_filters_of_the_coastal_radar_cost_what_their_equations_cost` (exact).
 ///
 /// # Panics

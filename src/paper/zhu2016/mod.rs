@@ -1,7 +1,35 @@
 //! Zhu, Wang and Yuan 2016: the IMM filter with fifth-degree cubature Kalman filters.
 //!
-//! After this folder the reader knows the paper's simulation, in the order of its section 4, with everything that it leaves open, and
-//! what becomes of its claims ([`claims`]).
+//! After this folder the reader knows where each equation of the paper is in the code, its simulation with everything that it leaves open,
+//! and what becomes of its claims ([`claims`]).
+//!
+//! The paper in its own order, section by section:
+//!
+//! - 2.1 points of the estimate, (1)-(10): [`cholesky`](crate::matrix::cholesky),
+//!   [`fifth_degree`](crate::rule::fifth_degree::fifth_degree), [`diagonals_plus`](crate::rule::fifth_degree::diagonals_plus),
+//!   [`diagonals_minus`](crate::rule::fifth_degree::diagonals_minus), [`point`](crate::filter::cubature::point)
+//! - 2.1 their weights, (11)-(13): [`centre_weight`](crate::rule::fifth_degree::centre_weight),
+//!   [`axis_weight`](crate::rule::fifth_degree::axis_weight), [`diagonal_weight`](crate::rule::fifth_degree::diagonal_weight), which (13)
+//!   [prints](crate::rule::printed::diagonal_weight) twice too large
+//! - 2.1 prediction, (14)-(26): [`propagated_point`](crate::filter::cubature::propagated_point),
+//!   [`weighted_mean`](crate::filter::cubature::weighted_mean), [`raw_covariance`](crate::filter::raw::raw_covariance), of which (24)
+//!   lacks two terms; the filter has the equal [`weighted_covariance`](crate::filter::cubature::weighted_covariance)
+//! - 2.2 measured points, (27)-(44): the same points of the prediction, [`Measurement::of`](crate::model::Measurement::of),
+//!   [`Measurement::mean`](crate::model::Measurement::mean)
+//! - 2.2 update, (45)-(53): [`innovation_covariance`](crate::filter::cubature::innovation_covariance),
+//!   [`cross_covariance`](crate::filter::cubature::cross_covariance), [`gain`](crate::filter::update::gain),
+//!   [`updated_mean`](crate::filter::update::updated_mean), [`updated_covariance`](crate::filter::update::updated_covariance)
+//! - 3.1 input integration, (54)-(56): [`mixing_probability`](crate::imm::probability::mixing_probability),
+//!   [`mixture_mean`](crate::gaussian::mixture_mean), [`mixture_covariance`](crate::gaussian::mixture_covariance)
+//! - 3.2 filtering, as (1)-(53): [`Equations::cubature`](crate::imm::Equations::cubature)
+//! - 3.3 model probabilities, (57), (58): [`log_density`](crate::gaussian::log_density),
+//!   [`mode_probability`](crate::imm::probability::mode_probability); as printed in [`imm::printed`](crate::imm::printed)
+//! - 3.4 output integration, (59), (60): the mixture again
+//! - 4 scenario, (61)-(63): [`coordinated_turn`](crate::model::motion::coordinated_turn),
+//!   [`acceleration_noise`](crate::model::motion::acceleration_noise), [`TRANSITION`], [`scenario`]
+//! - 4 figures, table 1, (64): [`root_mean_square`](crate::statistics::rmse::root_mean_square),
+//!   [`Reproduction`](super::result::Reproduction)
+//! - the claims: [`claims::judge`]
 //!
 //! Motion and measurement are linear here. Any rule that is exact to degree two then *is* the Kalman filter, so that three of the five
 //! columns of the paper's table must be equal; they are not.
@@ -39,6 +67,17 @@ pub const MEASUREMENT_VARIANCES: [f64; 2] = [20.0, 0.1];
 /// The transition matrix of the Markov chain — zhu2016 (63).
 ///
 /// Rows are the modes at k − 1: constant velocity, right turn, left turn (the paper does not number its turns).
+///
+/// Example: a target that is certainly in the right turn, the second mode, moves on by the second row.
+///
+/// ```
+/// use immaculate::imm::probability::predicted_mode_probability;
+/// use immaculate::paper::zhu2016::TRANSITION;
+///
+/// let chain = TRANSITION.map(Vec::from);
+/// let predicted = [0, 1, 2].map(|mode| predicted_mode_probability(&chain, &[0.0, 1.0, 0.0], mode));
+/// assert_eq!(predicted, [0.1, 0.8, 0.1]);
+/// ```
 pub const TRANSITION: [[f64; 3]; 3] = [[0.9, 0.05, 0.05], [0.1, 0.8, 0.1], [0.05, 0.15, 0.8]];
 
 /// The scenario under the given choices.
