@@ -23,6 +23,19 @@ use nalgebra::SMatrix;
 /// of a Riccati equation, and K = P⁻ Hᵀ S⁻¹ with them. A filter that has K and S from the start needs no covariance at all, which is
 /// most of the arithmetic. Nothing here asks that they are of that origin.
 ///
+/// Example: the filter of the other files here at its first step, with its gain and its S once and for all.
+///
+/// ```
+/// use immaculate::filter::{fixed_gain::FixedGain, kalman::predicted_mean, update::updated_mean};
+/// use nalgebra::{matrix, vector};
+///
+/// let fixed = FixedGain { gain: matrix![0.25], innovation_covariance: matrix![200.0] };
+/// let prediction = predicted_mean(&matrix![2.0], &vector![5.0]);
+/// let innovation = vector![24.0] - matrix![2.0] * &prediction;
+/// // 2 · 5 + ¼ · (24 − 2 · 10)
+/// assert_eq!(updated_mean(&prediction, &fixed.gain, &innovation), vector![11.0]);
+/// ```
+///
 /// Errata: the update is printed without the superscript 0 of the mixed state, although "one proceeds with the usual IMM algorithm".
 /// Both readings exist and are kept apart: [`Equations::fixed_gain`](crate::imm::Equations::fixed_gain) and
 /// [`Equations::fixed_gain_unmixed`](crate::imm::Equations::fixed_gain_unmixed).

@@ -22,6 +22,16 @@ pub struct Problem<T, const N: usize, const M: usize> {
     pub measurement: Measurement<T, N, M>,
     /// The measurement noise, R — sustika2015 (4), where it is diag(σ_r², σ_θ²): M × M, symmetric positive definite, in products of the
     /// units of the measurement.
+    ///
+    /// Example: a radar of 10 m and ½ rad. Deviations in the place of variances are a famous mistake.
+    ///
+    /// ```
+    /// use immaculate::number::Real;
+    /// use nalgebra::matrix;
+    ///
+    /// let noise = matrix![100.0, 0.0; 0.0, 0.25]; // diag(10², (1/2)²)
+    /// assert_eq!(noise.map(|variance: f64| Real::sqrt(&variance)), matrix![10.0, 0.0; 0.0, 0.5]);
+    /// ```
     pub measurement_noise: SMatrix<T, M, M>,
     /// The rule of a filter with points; none for the Kalman filter.
     pub rule: Option<Rule<T, N>>,
