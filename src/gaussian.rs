@@ -4,6 +4,11 @@
 //! stands: how likely a residual is ([`log_density`]), and what mean and covariance a weighted mixture has
 //! ([`mixture_mean`], [`mixture_covariance`]). The mixture is replaced by one Gaussian with these two moments twice in a
 //! cycle: where the estimates are mixed, and where they are combined for output.
+//!
+//! ```text
+//! weights, (x̂ⁱ, Pⁱ) ─ mixture_mean ─▶ x̂ ─ mixture_covariance ─▶ P      several estimates become one
+//! ν, S = L D Lᵀ ─ log_density ─▶ ln L                                   how well a mode explains the measurement
+//! ```
 
 use crate::matrix::{Ldl, quadratic_form};
 use crate::number::{Field, Real};

@@ -6,6 +6,13 @@
 //! - [`ldl`], P = L D Lᵀ with a unit diagonal in L, needs only + − × ÷. Gains, log-determinants and quadratic forms come
 //!   from it, so these equations run on exact rationals and on rational functions too.
 //!
+//! ```text
+//! P ─ cholesky ─▶ S ─▶ points                                     mixed and predicted covariances of filters with points
+//! S ─ ldl ─▶ L, D ─ check_positive_definite ─▶ solve              gain
+//!                                          └─▶ quadratic_form     exponent of the density
+//! lower triangle ─ mirrored ─▶ P                                  predicted and updated covariances
+//! ```
+//!
 //! Both read the lower triangle only. Neither repairs a matrix: a pivot that is not positive is an error. A row of zeros is no pivot: an
 //! entry of the state that is known exactly has one in its covariance, and in the square root.
 

@@ -3,6 +3,12 @@
 //! After this file the reader knows that such a filter is a Kalman filter whose four moments (predicted mean and covariance, ẑ and
 //! its covariances) are weighted sums over points. The rule ([`crate::rule`]) is an argument; nothing here depends on which.
 //!
+//! ```text
+//! x̂⁰, P⁰ ─ cholesky ─▶ S ─ point ─▶ X ─ propagated_point ─▶ X* ─ weighted_mean, weighted_covariance ─▶ x̂⁻, P⁻
+//! x̂⁻, P⁻ ─ cholesky ─▶ S ─ point ─▶ X ─ Measurement::of ──▶ Z ─ Measurement::mean ─▶ ẑ
+//!                                   └──────────────────────┴─ innovation_covariance, cross_covariance ─▶ S, C ─▶ super::update
+//! ```
+//!
 //! The equations are in the centred form of liu2017. Those of zhu2016 about the origin are in [`super::raw`].
 
 use crate::model::Measurement;

@@ -1,7 +1,8 @@
 //! The fixed-gain filter: its gain is a number of the problem and not of the data.
 //!
 //! After this file the reader knows what is left of a mode's filter once its covariances are gone: two constant matrices, one that
-//! corrects the prediction and one that says how likely a residual is.
+//! corrects the prediction and one that says how likely a residual is. Where they come from is in [`crate::steady::gains`] and
+//! [`crate::steady::riccati`]; the cycle that uses them is [`crate::imm::fixed_gain`].
 
 use nalgebra::SMatrix;
 

@@ -1,6 +1,15 @@
 //! The Kalman filter's predictions: exact when motion and measurement are linear.
 //!
 //! After this file the reader knows what the cubature filters approximate, and what they must equal on a linear problem.
+//!
+//! ```text
+//! x̂⁰ ─ predicted_mean ───────▶ x̂⁻ ─ H ─▶ ẑ
+//! P⁰ ─ predicted_covariance ─▶ P⁻ ─ innovation_covariance ─▶ S ─┐
+//!                              └─── cross_covariance ──────▶ C ─┴─▶ gain and update, which all filters share: super::update
+//! ```
+//!
+//! The examples of this file, of [`cubature`](super::cubature), [`raw`](super::raw) and [`update`](super::update) are one step of one
+//! filter: x̂⁰ = 5 and P⁰ = 4, F = 2 and Q = 9, H = 2 and R = 100, z = 24. It is put together in the [head of the folder](super).
 
 use crate::matrix::mirrored;
 use crate::number::Field;

@@ -1,6 +1,10 @@
 //! Gain, updated mean and updated covariance, for every filter.
 //!
 //! After this file the reader knows how a residual corrects a prediction once ẑ, S and C are there, wherever they came from.
+//!
+//! ```text
+//! C, S ─ gain ─▶ W         x̂⁻, W, ν = z − ẑ ─ updated_mean ─▶ x̂         P⁻, W, S ─ updated_covariance ─▶ P
+//! ```
 
 use crate::matrix::{Ldl, mirrored, solve};
 use crate::number::Field;

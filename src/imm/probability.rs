@@ -1,6 +1,11 @@
 //! The probabilities of the modes: forward along the Markov chain, backward to where a mode came from, and updated by Bayes' rule.
 //!
 //! After this file the reader knows the only part of the cycle that is not linear algebra, and why it is written in logarithms.
+//!
+//! ```text
+//! pᵢⱼ, μᵢ ─ predicted_mode_probability ─▶ cⱼ ─ mixing_probability ─▶ μᵢ∣ⱼ ─▶ the estimates are mixed, predicted and updated ─▶ ln Lⱼ
+//! ln Lⱼ ─ relative_likelihood ─▶ Λⱼ ─ with cⱼ, evidence ─▶ C ─ mode_probability ─▶ μⱼ of the next step
+//! ```
 
 use crate::number::{Field, Real};
 

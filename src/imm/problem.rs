@@ -2,6 +2,11 @@
 //!
 //! After this file the reader knows the inputs of the cycle and every way in which they can be wrong. Nothing is repaired: a matrix
 //! that is not quite symmetric or a row that does not quite sum to one is an error that names itself.
+//!
+//! ```text
+//! Problem (the same at every step) ─┬─ check ─▶ Imm::new ─▶ step, step, …        InvalidProblem: the field, and the equation that needs it
+//! Initial (step 0) ─────────────────┘
+//! ```
 
 use crate::filter::fixed_gain::FixedGain;
 use crate::gaussian::Gaussian;
@@ -180,6 +185,29 @@ pub enum InvalidProblem {
 
 impl<T: Real, const N: usize, const M: usize> Problem<T, N, M> {
     /// Checks everything that the cycle relies on.
+    ///
+    /// Example: a row of the transition matrix that does not sum to one is named, with the equation that needs it.
+    ///
+    /// ```
+    /// use immaculate::{gaussian::Gaussian, imm::{Initial, Problem}};
+    /// use immaculate::model::{Measurement, motion::Mode};
+    /// use nalgebra::{matrix, vector};
+    ///
+    /// let problem = Problem {
+    ///     modes: vec![Mode { name: "walk".into(), transition: matrix![1.0], noise: matrix![1.0] }],
+    ///     transition: vec![vec![0.75]],
+    ///     measurement: Measurement::Linear(matrix![1.0]),
+    ///     measurement_noise: matrix![2.0],
+    ///     rule: None,
+    ///     fixed_gains: None,
+    /// };
+    /// let initial = Initial {
+    ///     modes: vec![Gaussian { mean: vector![0.0], covariance: matrix![1.0] }],
+    ///     mode_probabilities: vec![1.0],
+    /// };
+    /// let error = problem.check(&initial).unwrap_err();
+    /// assert_eq!(error.to_string(), "`transition[0]` sums to 0.75; it must sum to 1 (zhu2016 (54))");
+    /// ```
     ///
     /// # Errors
     ///

@@ -2,6 +2,13 @@
 //!
 //! After this file the reader knows the papers' measurements, how residuals are formed and how measurements of cubature points
 //! are averaged when some of their components are angles ([`super::angle`]).
+//!
+//! ```text
+//! state or point ─ of ─▶ Z          weights, Z, centre ─ mean ─▶ ẑ          z, ẑ ─ difference ─▶ ν = z − ẑ, angles wrapped
+//! ```
+//!
+//! A converted measurement ([`Measurement::Converted`]) is linear once it has become a position; how it does is in
+//! [`crate::filter::converted`].
 
 use super::angle::wrap;
 use super::conversion::Conversion;

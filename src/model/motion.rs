@@ -8,6 +8,10 @@
 //! ```
 //!
 //! where A is the generator of the motion and L puts the noise on the velocities. A state is [x, ẋ, y, ẏ].
+//!
+//! Reading order: a [`Mode`] is such a pair with a name; [`constant_velocity`] and [`integrated_noise`] are the plainest one,
+//! [`coordinated_turn`] and [`turn_noise`] the same along a circle, and [`acceleration_noise`] is the noise of zhu2016, whose acceleration
+//! is constant over a step and not white.
 
 use crate::number::{Field, Real};
 use nalgebra::{Matrix4, Matrix4x2, SMatrix};
