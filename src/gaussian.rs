@@ -4,6 +4,11 @@
 //! stands: how likely a residual is ([`log_density`]), and what mean and covariance a weighted mixture has
 //! ([`mixture_mean`], [`mixture_covariance`]). The mixture is replaced by one Gaussian with these two moments twice in a
 //! cycle: where the estimates are mixed, and where they are combined for output.
+//!
+//! ```text
+//! weights, (x̂ⁱ, Pⁱ) ─ mixture_mean ─▶ x̂ ─ mixture_covariance ─▶ P      several estimates become one
+//! ν, S = L D Lᵀ ─ log_density ─▶ ln L                                   how well a mode explains the measurement
+//! ```
 
 use crate::matrix::{Ldl, quadratic_form};
 use crate::number::{Field, Real};
@@ -41,9 +46,7 @@ impl<T: Field, const N: usize> Gaussian<T, N> {
 ///
 /// Why: law of total expectation, E x = Σᵢ P(i) E(x ∣ i).
 ///
-/// Errata: zhu2016 (55) lacks its limits i = 1…r and (59) a hat; liu2017 (12) starts its sum at i = 0. All notational.
-///
-/// # Examples
+/// Example: three to one for the estimate at 0, against the one at 4.
 ///
 /// ```
 /// use immaculate::gaussian::{Gaussian, mixture_mean};
@@ -51,8 +54,11 @@ impl<T: Field, const N: usize> Gaussian<T, N> {
 ///
 /// let low = Gaussian { mean: vector![0.0], covariance: matrix![1.0] };
 /// let high = Gaussian { mean: vector![4.0], covariance: matrix![1.0] };
+/// // ¾ · 0 + ¼ · 4
 /// assert_eq!(mixture_mean(&[0.75, 0.25], &[low, high]), vector![1.0]);
 /// ```
+///
+/// Errata: zhu2016 (55) lacks its limits i = 1…r and (59) a hat; liu2017 (12) starts its sum at i = 0. All notational.
 ///
 /// Evidence: `mixed_moments_are_those_of_the_mixture` (symbolic).
 pub fn mixture_mean<T: Field, const N: usize>(weights: &[T], components: &[Gaussian<T, N>]) -> SVector<T, N> {
@@ -82,21 +88,28 @@ pub fn mixture_mean<T: Field, const N: usize>(weights: &[T], components: &[Gauss
 ///
 /// Of two components the spread is μ₁μ₂(x̂¹ − x̂²)(x̂¹ − x̂²)ᵀ, so that of any two estimates at most a quarter of their squared difference.
 ///
-/// Errata: liu2017 (12) starts its sum at i = 0 (notational). derbez2000 weighs the spread of two models in step 3 of its algorithm with
-/// another mixing probability than μ₍l∣j₎, bounds it by a square of one in section 3.1, and takes Σ μʲ Pʲ for the error of the combined
-/// estimate, of which it is only an upper bound.
-///
-/// # Examples
+/// Example: the same two estimates. Three quarters of the covariance are the spread, and two famous mistakes lose it or take it about
+/// another mean.
 ///
 /// ```
 /// use immaculate::gaussian::{Gaussian, mixture_covariance};
 /// use nalgebra::{matrix, vector};
 ///
+/// let weights = [0.75, 0.25];
 /// let low = Gaussian { mean: vector![0.0], covariance: matrix![1.0] };
 /// let high = Gaussian { mean: vector![4.0], covariance: matrix![1.0] };
-/// // 1 + ¾ · 1² + ¼ · 3²
-/// assert_eq!(mixture_covariance(&[0.75, 0.25], &[low, high], &vector![1.0]), matrix![4.0]);
+/// let both = [low.clone(), high.clone()];
+/// // ¾ · (1 + 1²) + ¼ · (1 + 3²)
+/// assert_eq!(mixture_covariance(&weights, &both, &vector![1.0]), matrix![4.0]);
+/// // Without the spread, ¾ · 1 + ¼ · 1: the disagreement is forgotten.
+/// assert_eq!(low.covariance * weights[0] + high.covariance * weights[1], matrix![1.0]);
+/// // About the mean of one of the two, ¾ · (1 + 0²) + ¼ · (1 + 4²).
+/// assert_eq!(mixture_covariance(&weights, &both, &vector![0.0]), matrix![5.0]);
 /// ```
+///
+/// Errata: liu2017 (12) starts its sum at i = 0 (notational). derbez2000 weighs the spread of two models in step 3 of its algorithm with
+/// another mixing probability than μ₍l∣j₎, bounds it by a square of one in section 3.1, and takes Σ μʲ Pʲ for the error of the combined
+/// estimate, of which it is only an upper bound.
 ///
 /// Evidence: `mixed_moments_are_those_of_the_mixture` (symbolic), `printed_spread_of_two_models_is_not_the_mixed_covariance`,
 /// `printed_bound_of_the_moment_matching_term_is_exceeded`, `printed_blend_of_the_errors_is_only_an_upper_bound` (exact).
@@ -130,20 +143,25 @@ pub fn mixture_covariance<T: Field, const N: usize>(
 /// probabilities are normalised, so a likelihood that would underflow a double is an ordinary number. The constant
 /// (2π)^(−M/2) is common to all modes and cancels in their probabilities; |S|^(−½) is not and does not.
 ///
-/// Errata: zhu2016 (57) writes the matrix 2πV under a scalar root and names the residual as the third argument of N;
-/// liu2017 (21) prints the exponent −n_z/2 for −½, which squares the determinant when n_z = 2 and favours models with a small
-/// innovation covariance. derbez2000 (not numbered) has 2π outside the determinant as zhu2016 has, which is right for its one component.
-///
-/// # Examples
+/// Example: a residual of 2 where the deviation is 2.
 ///
 /// ```
-/// use immaculate::{gaussian::log_density, matrix::ldl};
+/// use immaculate::{gaussian::log_density, matrix::ldl, number::Real};
 /// use nalgebra::{matrix, vector};
 ///
 /// let log_likelihood: f64 = log_density(&vector![2.0], &ldl(&matrix![4.0]));
-/// let by_hand = -0.5 * (1.0 + 4.0_f64.ln() + (2.0 * std::f64::consts::PI).ln());
-/// assert!((log_likelihood - by_hand).abs() < 1e-15);
+/// // −½ (2²/4 + ln(2π · 4)); the product is the same one, so nothing is rounded differently
+/// let by_hand = -(1.0 + Real::ln(&(2.0 * std::f64::consts::PI * 4.0))) / 2.0;
+/// assert_eq!(log_likelihood, by_hand);
+///
+/// // A likelihood of e⁻⁵⁰⁰⁰⁰ is zero as a double, and its logarithm is an ordinary number: −½ (200²/0.4 + ln(0.8π)).
+/// let far: f64 = log_density(&vector![200.0], &ldl(&matrix![0.4]));
+/// assert_eq!((far.round(), far.exp()), (-50_000.0, 0.0));
 /// ```
+///
+/// Errata: zhu2016 (57) writes the matrix 2πV under a scalar root and names the residual as the third argument of N;
+/// liu2017 (21) prints the exponent −n_z/2 for −½, which squares the determinant when n_z = 2 and favours models with a small
+/// innovation covariance. derbez2000 (not numbered) has 2π outside the determinant as zhu2016 has, which is right for its one component.
 ///
 /// Evidence: `the_density_integrates_to_one` (property), `printed_likelihood_exponent_squares_the_determinant`,
 /// `printed_likelihood_without_the_determinant_of_two_pi_is_not_a_density`,

@@ -1,22 +1,161 @@
 //! Immaculate: the executable specification of the interacting multiple model filter.
 //!
-//! The map, in reading order:
+//! A target that now flies straight and now turns is tracked by several filters at once, one a *mode* of motion, that exchange what they
+//! know before every step. Four papers put fixed-gain, Kalman, cubature, unscented and converted-measurement filters inside it; every
+//! equation of theirs is one plain function here, under its printed number, in one number system or another. This is the book of these
+//! equations from the side of the code: each says what it is, in letters and in words of the code, why it holds, what an example by hand
+//! gives, what is printed wrongly, and which test is its evidence. The papers are `zhu2016`, `liu2017`, `derbez2000` and `sustika2015`;
+//! [`paper`] has their names and simulations.
 //!
-//! | room           | what is in it                                                                            |
-//! |----------------|------------------------------------------------------------------------------------------|
-//! | [`number`]     | the number systems in which every equation is evaluated                                   |
-//! | [`matrix`]     | Cholesky and L D Lᵀ, for every number system                                              |
-//! | [`gaussian`]   | mean and covariance, density, moments of a mixture                                        |
-//! | [`rule`]       | cubature rules in exact form, their moments and degrees                                   |
-//! | [`model`]      | how the target moves, what the sensor sees                                                |
-//! | [`filter`]     | one filter: Kalman, cubature, converted measurements, fixed gain                           |
-//! | [`imm`]        | the cycle                                                                                 |
-//! | [`steady`]     | steady gains, Riccati and Lyapunov equations, joint stability and its certificates         |
-//! | [`oracle`]     | certified cases, traces, and the judge of other filters                                   |
-//! | [`book`]       | every equation with its code, derivation, errata, tests, mistakes and cases               |
+//! # A step by hand
 //!
-//! Arrows run downwards: numbers know nothing, equations know numbers and matrices. Equations, filters and the cycle read no files,
-//! draw no random numbers and print nothing.
+//! Two modes, one that hardly moves and one that moves a lot; each is a filter with one state. The comments are the arithmetic:
+//!
+//! ```
+//! use immaculate::gaussian::Gaussian;
+//! use immaculate::imm::{Equations, Imm, Initial, Problem};
+//! use immaculate::model::{Measurement, motion::Mode};
+//! use nalgebra::{matrix, vector};
+//!
+//! let mode = |name: &str, noise: f64| Mode { name: name.into(), transition: matrix![1.0], noise: matrix![noise] };
+//! let problem = Problem {
+//!     modes: vec![mode("quiet", 1.0), mode("lively", 13.0)],
+//!     transition: vec![vec![0.5, 0.5], vec![0.5, 0.5]], // row i: from mode i
+//!     measurement: Measurement::Linear(matrix![1.0]),
+//!     measurement_noise: matrix![1.0],
+//!     rule: None,
+//!     fixed_gains: None,
+//! };
+//! let at = |x: f64| Gaussian { mean: vector![x], covariance: matrix![1.0] };
+//! let initial = Initial { modes: vec![at(1.0), at(3.0)], mode_probabilities: vec![0.5, 0.5] };
+//! let mut filter = Imm::new(problem, Equations::kalman(), &initial)?;
+//! let step = filter.step(Some(&vector![2.0]))?;
+//!
+//! // Where the modes come from: c = ½ · ½ + ½ · ½, and of that ½ · ½ from either.
+//! assert_eq!(step.predicted_mode_probabilities, [0.5, 0.5]);
+//! assert_eq!(step.mixing_probabilities, [[0.5, 0.5], [0.5, 0.5]]);
+//! // Both start from the mixture of 1 and 3: mean 2, variance 1 and the spread of the means, 1.
+//! assert_eq!(step.mixed[0], Gaussian { mean: vector![2.0], covariance: matrix![2.0] });
+//! // Prediction: 2 + 1 and 2 + 13. Innovation: 2 − 2, with 3 + 1 and 15 + 1.
+//! assert_eq!([0, 1].map(|j| step.predicted[j].covariance[0]), [3.0, 15.0]);
+//! assert_eq!([0, 1].map(|j| step.innovation_covariances[j][0]), [4.0, 16.0]);
+//! // Update: gains 3/4 and 15/16, variances 3 − 9/4 and 15 − 225/16.
+//! assert_eq!([0, 1].map(|j| step.gains[j][0]), [0.75, 0.9375]);
+//! assert_eq!([0, 1].map(|j| step.updated[j].covariance[0]), [0.75, 0.9375]);
+//! // Both predictions are hit, which speaks for the mode that was the surer: 1/√4 to 1/√16, so 2/3 to 1/3.
+//! // (A logarithm and an exponential of it are rounded in their last place.)
+//! assert!((step.mode_probabilities[0] - 2.0 / 3.0).abs() <= 2.0 * f64::EPSILON);
+//! // For output: 2/3 · 3/4 + 1/3 · 15/16 = 13/16, and no spread, for both means are 2.
+//! assert_eq!(step.combined.mean, vector![2.0]);
+//! assert!((step.combined.covariance[0] - 0.8125).abs() <= 2.0 * f64::EPSILON);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # The rooms, in reading order
+//!
+//! | room           | what is in it                                                                      | what it needs    |
+//! |----------------|------------------------------------------------------------------------------------|------------------|
+//! | [`number`]     | the number systems in which every equation is evaluated                            | nothing          |
+//! | [`matrix`]     | Cholesky and L D Lᵀ, for every number system                                       | numbers          |
+//! | [`gaussian`]   | moments of a mixture, density of a residual                                        | matrices         |
+//! | [`model`]      | how the target moves, what the sensor sees                                         | numbers          |
+//! | [`rule`]       | cubature rules in exact form, their moments and degrees                            | numbers          |
+//! | [`filter`]     | one filter: Kalman, cubature, converted measurements, fixed gain                   | rules and models |
+//! | [`imm`]        | the cycle: a table of equations and the wiring that runs it                        | filters          |
+//! | [`steady`]     | steady gains, Riccati and Lyapunov equations, joint stability and its certificates | filters          |
+//! | [`statistics`] | errors over runs, their uncertainty, consistency                                   | numbers          |
+//! | [`paper`]      | the papers' simulations, published tables and claims, and their judges             | all above        |
+//! | [`oracle`]     | certified cases, traces, and the judge of other filters                            | the cycle        |
+//! | [`book`]       | every equation with its code, derivation, errata, tests, mistakes and cases        | all above        |
+//! | [`report`]     | what is printed                                                                    | all above        |
+//!
+//! Arrows run downwards: numbers know nothing, equations know numbers and matrices. Equations, filters and the cycle read no files, draw no
+//! random numbers and print nothing. Whoever wants the filter alone reads [`gaussian`], [`filter`] and [`imm`], in that order.
+//!
+//! # From a paper's section to its room
+//!
+//! | section                     | equations              | rooms                                                           |
+//! |-----------------------------|------------------------|-----------------------------------------------------------------|
+//! | zhu2016 2.1, points         | zhu2016 (1)-(8)        | [`matrix`], [`filter::cubature`]                                |
+//! | 2.1, directions and weights | zhu2016 (9)-(13)       | [`rule::fifth_degree`]                                          |
+//! | 2.1, prediction             | zhu2016 (14)-(26)      | [`filter::cubature`], [`filter::raw`]                           |
+//! | 2.2, fresh points           | zhu2016 (27)-(34)      | [`matrix`], [`filter::cubature`]                                |
+//! | 2.2, what they measure      | zhu2016 (35)-(44)      | [`model::measurement`]                                          |
+//! | 2.2, its covariances        | zhu2016 (45)-(50)      | [`filter::raw`]                                                 |
+//! | 2.2, update                 | zhu2016 (51)-(53)      | [`filter::update`]                                              |
+//! | 3.1, input                  | zhu2016 (54)-(56)      | [`imm::probability`], [`gaussian`]                              |
+//! | 3.3, model probabilities    | zhu2016 (57), (58)     | [`gaussian`], [`imm::probability`]                              |
+//! | 3.4, output                 | zhu2016 (59), (60)     | [`gaussian`]                                                    |
+//! | 4, models                   | zhu2016 (61), (62)     | [`model::motion`], [`model::measurement`]                       |
+//! | 4, simulation               | zhu2016 (63), (64)     | [`paper::zhu2016`], [`statistics::rmse`]                        |
+//! | liu2017 2, problem          | liu2017 (1)            | [`model::motion`], [`model::measurement`]                       |
+//! | 2.1, the rule               | liu2017 (2)-(11)       | [`rule`], [`rule::sphere`], [`rule::simplex`]                   |
+//! | 3, step 1, interaction      | liu2017 (12), (13)     | [`gaussian`], [`imm::probability`]                              |
+//! | 3, step 2, points           | liu2017 (14)-(16)      | [`filter::cubature`], [`rule::simplex`]                         |
+//! | 3, step 2, prediction       | liu2017 (17)           | [`filter::cubature`]                                            |
+//! | 3, step 2, measurement      | liu2017 (18), (19)     | [`filter::cubature`], [`model::measurement`]                    |
+//! | 3, step 2, update           | liu2017 (20)           | [`filter::update`]                                              |
+//! | 3, steps 3 and 4            | liu2017 (21)-(24)      | [`gaussian`], [`imm::probability`]                              |
+//! | 4.1, models                 | liu2017 (25)-(31)      | [`model::motion`], [`model::measurement`]                       |
+//! | 4.2, simulation             | liu2017 (32)-(34)      | [`paper::liu2017`], [`statistics::rmse`]                        |
+//! | derbez2000 2.1, mixing      | derbez2000 (1), (3)    | [`gaussian`], [`imm::probability`]                              |
+//! | 2.1, the filters            | derbez2000 (2), (4)    | [`filter::kalman`], [`filter::update`]                          |
+//! | 2.2, the models             | derbez2000 (5), (6)    | [`model::acceleration`]                                         |
+//! | 2.2, the long-term error    | derbez2000 (7), (8)    | [`steady::mismatch`], [`filter::update`], [`steady::long_term`] |
+//! | 3, fixed gains              | not numbered           | [`filter::fixed_gain`], [`imm::fixed_gain`], [`steady::gains`]  |
+//! | 3, their equilibrium        | not numbered           | [`steady::riccati`], [`steady::reach`]                          |
+//! | 3.1, stability              | not numbered           | [`steady::perturbation`], [`steady::pair`], [`steady::verdict`] |
+//! | 4, simulation               | not numbered           | [`paper::derbez2000`]                                           |
+//! | sustika2015 2.1, motion     | sustika2015 (1)        | [`model::motion`], [`model::wiener`]                            |
+//! | 2.1, measurement            | sustika2015 (2)-(4)    | [`model::measurement`], [`imm::problem`]                        |
+//! | 2.2, the filter             | sustika2015 (5)-(13)   | [`imm::probability`], [`gaussian`], [`imm::unequal`]            |
+//! | 3.1, Kalman filter          | sustika2015 (14)-(19)  | [`filter::kalman`], [`filter::update`]                          |
+//! | 3.1, converted measurements | sustika2015 (20)-(26)  | [`model::conversion`], [`filter::converted`]                    |
+//! | 3.2, points                 | sustika2015 (27)-(29)  | [`filter::cubature`], [`rule::unscented`]                       |
+//! | 3.2, what they measure      | sustika2015 (30), (31) | [`model::measurement`]                                          |
+//! | 3.2, its covariances        | sustika2015 (32), (33) | [`filter::cubature`]                                            |
+//! | 3.2, update                 | sustika2015 (34)-(36)  | [`filter::update`]                                              |
+//! | 4 and 5, simulation         | sustika2015 (37)-(39)  | [`statistics::fit_error`], [`paper::sustika2015`]               |
+//!
+//! # From a printed number to everything about it
+//!
+//! The first line of a doc comment ends with the numbers that its item realises, in one fixed form after a dash:
+//! `zhu2016 (56), liu2017 (12)`, or `zhu2016 (14)-(20)` for several in a row. A search for `zhu2016 (56)` finds those that stand alone, here and in the source, and
+//!
+//! ```text
+//! immaculate equation "zhu2016 56"
+//! ```
+//!
+//! shows the equation with its LaTeX, status and erratum, its function, its tests, the cases that judge it and the mistakes that are
+//! known. In its doc comment the parts have a fixed order:
+//!
+//! | part       | what it says                                                                             |
+//! |------------|------------------------------------------------------------------------------------------|
+//! | first line | the name, and the printed numbers                                                        |
+//! | formula    | in the papers' letters                                                                   |
+//! | table      | each letter, the name it has here, its shape or unit                                     |
+//! | `Why`      | the derivation; `Source` where it is printed nowhere                                     |
+//! | `Example`  | by hand, with exact numbers, and often what a famous mistake gives; all are run as tests |
+//! | `Errors`   | when there is no answer                                                                  |
+//! | `Errata`   | what the papers print instead                                                            |
+//! | `Evidence` | the tests in `tests/`, and their kind: exact, symbolic, enclosed, property, consistency  |
+//!
+//! The way back, from code to paper: [`Quantity::equation`](imm::Quantity::equation) gives the numbers of a traced value, and every error
+//! of a run says which equation had no answer. `spec/` has every equation, erratum, open parameter and claim as data.
+//!
+//! # The command line
+//!
+//! | command                          | does                                                                             |
+//! |----------------------------------|----------------------------------------------------------------------------------|
+//! | `immaculate equation ID`         | shows an equation with its code, tests, cases and mistakes                       |
+//! | `immaculate report --out FILE`   | writes the whole specification and what its runs show as one page                |
+//! | `immaculate reproduce`, `claims` | runs the papers' simulations beside their tables; judges their claims            |
+//! | `immaculate check -- COMMAND`    | judges a filter in any language: right to so many digits, or wrong where and why |
+//! | `immaculate cases`, `trace FILE` | the certified cases; every value of every step of a problem                      |
+//! | `immaculate variants`, `rule`    | the catalogue of mistakes, conventions and forms; points and weights of a rule   |
+//! | `immaculate stability`           | whether two fixed-gain filters are stable together, with a proof                 |
+//!
+//! Every command explains itself with `--help`.
 
 pub mod book;
 pub mod filter;

@@ -6,6 +6,13 @@
 //! - [`ldl`], P = L D Lᵀ with a unit diagonal in L, needs only + − × ÷. Gains, log-determinants and quadratic forms come
 //!   from it, so these equations run on exact rationals and on rational functions too.
 //!
+//! ```text
+//! P ─ cholesky ─▶ S ─▶ points                                     mixed and predicted covariances of filters with points
+//! S ─ ldl ─▶ L, D ─ check_positive_definite ─▶ solve              gain
+//!                                          └─▶ quadratic_form     exponent of the density
+//! lower triangle ─ mirrored ─▶ P                                  predicted and updated covariances
+//! ```
+//!
 //! Both read the lower triangle only. Neither repairs a matrix: a pivot that is not positive is an error. A row of zeros is no pivot: an
 //! entry of the state that is known exactly has one in its covariance, and in the square root.
 
@@ -42,19 +49,22 @@ pub struct NotPositiveDefinite {
 /// An entry that is known exactly has a row and a column of zeros in P, and so in S: the acceleration of a constant velocity motion that
 /// shares the state of another. The formula is then that of the other entries alone.
 ///
-/// # Errors
-///
-/// [`NotPositiveDefinite`] when the pivot of another row is not positive.
-///
-/// # Examples
+/// Example: a covariance of deviations 2 and √10 by hand, one with an entry that is known exactly, and one that is none.
 ///
 /// ```
 /// use immaculate::matrix::cholesky;
 /// use nalgebra::matrix;
 ///
-/// let root = cholesky(&matrix![4.0, 2.0; 2.0, 10.0]).unwrap();
-/// assert_eq!(root, matrix![2.0, 0.0; 1.0, 3.0]);
+/// // √4, 2/2, √(10 − 1²)
+/// assert_eq!(cholesky(&matrix![4.0, 2.0; 2.0, 10.0]).unwrap(), matrix![2.0, 0.0; 1.0, 3.0]);
+/// assert_eq!(cholesky(&matrix![0.0, 0.0; 0.0, 9.0]).unwrap(), matrix![0.0, 0.0; 0.0, 3.0]);
+/// // 1 − 2² is negative: a correlation of 2 does not exist.
+/// assert_eq!(cholesky(&matrix![1.0, 2.0; 2.0, 1.0]).unwrap_err().pivot, 1);
 /// ```
+///
+/// # Errors
+///
+/// [`NotPositiveDefinite`] when the pivot of another row is not positive.
 ///
 /// Evidence: `the_cholesky_factor_times_its_transpose_is_the_matrix` (exact),
 /// `an_entry_without_variance_has_a_row_of_zeros_in_the_square_root` (exact),
@@ -120,15 +130,21 @@ pub struct Ldl<T, const N: usize> {
 /// A pivot of zero makes what follows it [`Field::undecided`]; for an ordered number system [`check_positive_definite`]
 /// says so as an error.
 ///
-/// # Examples
+/// Example: no root is needed, so the factors of a rational matrix are rational, for doubles and for unknowns alike.
 ///
 /// ```
 /// use immaculate::matrix::ldl;
 /// use nalgebra::{matrix, vector};
 ///
 /// let factors = ldl(&matrix![4.0, 2.0; 2.0, 10.0]);
-/// assert_eq!(factors.lower, matrix![1.0, 0.0; 0.5, 1.0]);
+/// // 4, 10 − (2/4)² · 4
 /// assert_eq!(factors.diagonal, vector![4.0, 9.0]);
+/// assert_eq!(factors.lower, matrix![1.0, 0.0; 0.5, 1.0]);
+///
+/// use immaculate::number::RationalFunction;
+/// let [p, c, r] = ["p", "c", "r"].map(RationalFunction::unknown);
+/// let pivots = ldl(&matrix![p.clone(), c.clone(); c.clone(), r.clone()]).diagonal;
+/// assert_eq!(pivots[1], r - c.clone() * c / p);
 /// ```
 ///
 /// Evidence: `the_ldl_factors_multiply_to_the_matrix` (symbolic).
@@ -156,6 +172,18 @@ pub fn ldl<T: Field, const N: usize>(matrix: &SMatrix<T, N, N>) -> Ldl<T, N> {
 ///
 /// Source: vᵀ L D Lᵀ v = Σᵢ Dᵢ yᵢ² with y = Lᵀ v, and L is invertible.
 ///
+/// Example: the error says which pivot it was.
+///
+/// ```
+/// use immaculate::matrix::{check_positive_definite, ldl};
+/// use nalgebra::matrix;
+///
+/// assert!(check_positive_definite(&ldl(&matrix![4.0, 2.0; 2.0, 10.0])).is_ok());
+/// // 1, then 1 − 2²/1
+/// let error = check_positive_definite(&ldl(&matrix![1.0, 2.0; 2.0, 1.0])).unwrap_err();
+/// assert_eq!(error.to_string(), "is not positive definite: pivot 2 of 2 is not positive");
+/// ```
+///
 /// # Errors
 ///
 /// [`NotPositiveDefinite`] with the first pivot that is not.
@@ -171,6 +199,17 @@ pub fn check_positive_definite<T: Field + PartialOrd, const N: usize>(
 /// The solution X of L D Lᵀ X = B, column by column: forward substitution, division by D, back substitution.
 ///
 /// Source: Golub and Van Loan, Matrix Computations, 4th edition, section 3.1.
+///
+/// Example: 4x + 2y = 8 and 2x + 10y = 22.
+///
+/// ```
+/// use immaculate::matrix::{ldl, solve};
+/// use nalgebra::{matrix, vector};
+///
+/// let factors = ldl(&matrix![4.0, 2.0; 2.0, 10.0]);
+/// // forward (8, 22 − ½ · 8), divided (8/4, 18/9), back (2 − ½ · 2, 2)
+/// assert_eq!(solve(&factors, &vector![8.0, 22.0]), vector![1.0, 2.0]);
+/// ```
 ///
 /// Evidence: `solving_with_the_ldl_factors_inverts_the_matrix` (symbolic).
 pub fn solve<T: Field, const N: usize, const C: usize>(
@@ -202,6 +241,17 @@ pub fn solve<T: Field, const N: usize, const C: usize>(
 ///
 /// Source: P⁻¹ = L⁻ᵀ D⁻¹ L⁻¹, so vᵀ P⁻¹ v = (L⁻¹v)ᵀ D⁻¹ (L⁻¹v).
 ///
+/// Example: the squared distance of (2, 4) from zero, in deviations.
+///
+/// ```
+/// use immaculate::matrix::{ldl, quadratic_form};
+/// use nalgebra::{matrix, vector};
+///
+/// let factors = ldl(&matrix![4.0, 2.0; 2.0, 10.0]);
+/// // y = (2, 4 − ½ · 2):   2²/4 + 3²/9
+/// assert_eq!(quadratic_form(&factors, &vector![2.0, 4.0]), 2.0);
+/// ```
+///
 /// Evidence: `the_quadratic_form_is_the_one_of_the_inverse` (symbolic).
 pub fn quadratic_form<T: Field, const N: usize>(factors: &Ldl<T, N>, vector: &SVector<T, N>) -> T {
     let mut y = vector.clone();
@@ -219,6 +269,21 @@ pub fn quadratic_form<T: Field, const N: usize>(factors: &Ldl<T, N>, vector: &SV
 /// The logarithm of the determinant, ln|P| = Σᵢ ln Dᵢ.
 ///
 /// Source: |L D Lᵀ| = |D|, since L has a unit diagonal.
+///
+/// Example: a determinant may underflow; its logarithm does not.
+///
+/// ```
+/// use immaculate::{matrix::{ldl, log_determinant}, number::Real};
+/// use nalgebra::matrix;
+///
+/// // |P| = 4 · 10 − 2² = 36 = 4 · 9
+/// let factors = ldl(&matrix![4.0, 2.0; 2.0, 10.0]);
+/// assert_eq!(log_determinant(&factors), Real::ln(&4.0) + Real::ln(&9.0));
+///
+/// let small = ldl(&matrix![1e-200, 0.0; 0.0, 1e-200]);
+/// assert_eq!(small.diagonal.product(), 0.0);
+/// assert_eq!(log_determinant(&small), 2.0 * Real::ln(&1e-200));
+/// ```
 ///
 /// Evidence: `the_log_determinant_is_the_logarithm_of_the_determinant` (property).
 pub fn log_determinant<T: Real, const N: usize>(factors: &Ldl<T, N>) -> T {
@@ -241,6 +306,15 @@ pub fn log_determinant<T: Real, const N: usize>(factors: &Ldl<T, N>) -> T {
 /// the two triangles then go different ways: the antisymmetric part E follows E ← F E Fᵀ, which no measurement corrects. Along a straight
 /// track with the chain and noise of liu2017 it grows until, after some thousand steps, a covariance is not positive definite any more.
 ///
+/// Example: what stands above the diagonal is not read.
+///
+/// ```
+/// use immaculate::matrix::mirrored;
+/// use nalgebra::matrix;
+///
+/// assert_eq!(mirrored(matrix![4.0, 2.000001; 2.0, 10.0]), matrix![4.0, 2.0; 2.0, 10.0]);
+/// ```
+///
 /// Evidence: `without_the_mirrored_triangle_a_long_run_fails` (property).
 pub fn mirrored<T: Field, const N: usize>(lower: SMatrix<T, N, N>) -> SMatrix<T, N, N> {
     let mut matrix = lower;
@@ -255,6 +329,17 @@ pub fn mirrored<T: Field, const N: usize>(lower: SMatrix<T, N, N>) -> SMatrix<T,
 /// A symmetric matrix is positive definite when all its pivots are positive.
 ///
 /// Source: [`check_positive_definite`].
+///
+/// Example: definite, semidefinite, and neither.
+///
+/// ```
+/// use immaculate::matrix::is_positive_definite;
+/// use nalgebra::matrix;
+///
+/// assert!(is_positive_definite(&matrix![4.0, 2.0; 2.0, 10.0]));
+/// assert!(!is_positive_definite(&matrix![1.0, 1.0; 1.0, 1.0])); // 1, then 1 − 1²
+/// assert!(!is_positive_definite(&matrix![1.0, 2.0; 2.0, 1.0])); // 1, then 1 − 2²
+/// ```
 pub fn is_positive_definite<T: Field + PartialOrd, const N: usize>(matrix: &SMatrix<T, N, N>) -> bool {
     check_positive_definite(&ldl(matrix)).is_ok()
 }
@@ -274,6 +359,17 @@ pub fn is_symmetric<T: Field, const N: usize>(matrix: &SMatrix<T, N, N>) -> bool
 ///
 /// Source: Golub and Van Loan, Matrix Computations, 4th edition, section 4.2, positive semidefinite matrices; the pivots are
 /// compared as parts of their diagonal entries, so that units do not matter.
+///
+/// Example: the noise of an acceleration, G q Gᵀ with G = (½, 1), has rank one and is a covariance.
+///
+/// ```
+/// use immaculate::matrix::is_positive_semidefinite;
+/// use nalgebra::matrix;
+///
+/// assert!(is_positive_semidefinite(&matrix![0.25, 0.5; 0.5, 1.0]));
+/// assert!(!is_positive_semidefinite(&matrix![0.25, 0.75; 0.75, 1.0])); // 1, then ¼ − ¾²
+/// assert!(!is_positive_semidefinite(&matrix![0.0, 1.0; 1.0, 4.0])); // no variance, and yet a covariance
+/// ```
 ///
 /// Evidence: `a_matrix_is_positive_semidefinite_exactly_when_no_pivot_is_negative`,
 /// `a_covariance_of_low_rank_is_positive_semidefinite_as_rounded` (property).

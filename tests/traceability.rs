@@ -244,8 +244,15 @@ fn every_public_equation_names_its_number_or_its_source() {
     }
 }
 
-/// The rooms in which every equation and every function with a source has an example that is run.
-const ROOMS_WITH_EXAMPLES: [&str; 5] = [
+// Examples: what an equation does is shown by numbers that can be followed by hand
+
+/// The rooms in which every public equation has an example that is run.
+const ROOMS_WITH_EXAMPLES: [&str; 10] = [
+    "src/gaussian.rs",
+    "src/matrix.rs",
+    "src/model/",
+    "src/filter/",
+    "src/imm/",
     "src/rule/",
     "src/steady/",
     "src/statistics/",
@@ -255,48 +262,112 @@ const ROOMS_WITH_EXAMPLES: [&str; 5] = [
 
 #[test]
 fn every_public_equation_has_an_example_that_is_run() {
-    let mut wrong = Vec::new();
-    let has_examples = |path: &str| ROOMS_WITH_EXAMPLES.iter().any(|room| path.starts_with(room));
-    for file in sources().iter().filter(|file| has_examples(&file.path)) {
-        for function in public_functions(&file.text) {
-            let sourced = function.doc.lines().any(|line| line.starts_with("Source:"));
-            if (sourced || !headings(&function.doc).is_empty()) && !has_example_in_its_place(&function.doc) {
-                wrong.push(format!("{}: {}", file.path, function.name));
+    let mut checked = 0;
+    for file in sources() {
+        if !ROOMS_WITH_EXAMPLES.iter().any(|room| file.path.starts_with(room)) {
+            continue;
+        }
+        for (item, doc) in documented_public_items(&file.text) {
+            let names_a_source = doc.lines().any(|line| line.starts_with("Source:"));
+            if headings(&doc).is_empty() && !names_a_source {
+                continue;
             }
+            assert_eq!(wrong_with_the_example(&doc), None, "{}: {item}", file.path);
+            checked += 1;
         }
     }
-    assert!(wrong.is_empty(), "no example, or not in its place: {wrong:#?}");
-    assert!(has_example_in_its_place(
-        "Example: one.\n```\nassert!(true);\n```\nEvidence: `law`."
-    ));
-    assert!(!has_example_in_its_place(
-        "Example: one.\n```text\nassert!(true);\n```\nEvidence: `law`."
-    ));
-    assert!(
-        !has_example_in_its_place("Example: one.\n```\nlet a = 1;\n```"),
-        "it states nothing"
-    );
-    assert!(!has_example_in_its_place(
-        "Evidence: `law`.\nExample: one.\n```\nassert!(true);\n```"
-    ));
+    assert!(checked > 80, "the rooms were read: {checked}");
 }
 
-/// Whether a doc comment has a block of code that is run and asserts something, before its errors, errata and evidence.
-fn has_example_in_its_place(doc: &str) -> bool {
-    let mut blocks = doc.split("```");
-    let mut before = blocks.next().unwrap_or_default().to_owned();
-    while let (Some(block), after) = (blocks.next(), blocks.next()) {
-        if block.starts_with('\n') {
-            let early = ["# Errors", "# Panics", "Errata:", "Evidence:"];
-            let has_label = before.lines().any(|line| line.starts_with("Example: "));
-            let is_late = before
-                .lines()
-                .any(|line| early.iter().any(|word| line.starts_with(word)));
-            return block.contains("assert") && has_label && !is_late;
-        }
-        before.push_str(after.unwrap_or_default());
+#[test]
+fn an_example_is_code_that_is_run_and_asserts_and_stands_in_its_place() {
+    let with =
+        |fence: &str, code: &str| format!("Name.\n\nExample: two.\n\n```{fence}\n{code}\n```\n\nEvidence: `a`.\n");
+    assert_eq!(wrong_with_the_example(&with("", "assert_eq!(1 + 1, 2);")), None);
+    for fence in ["text", "ignore", "no_run", "compile_fail"] {
+        let doc = with(fence, "assert_eq!(1 + 1, 2);");
+        assert_eq!(wrong_with_the_example(&doc), Some("it has none that is run"), "{fence}");
     }
-    false
+    assert_eq!(wrong_with_the_example("Name."), Some("it has none that is run"));
+    let silent = with("", "1 + 1;");
+    assert_eq!(wrong_with_the_example(&silent), Some("it asserts nothing"));
+    let late = "Errata: one.\n\n".to_owned() + &with("", "assert!(true);");
+    let wrong = "`Example:` stands before errors, errata and evidence";
+    assert_eq!(wrong_with_the_example(&late), Some(wrong));
+    let unnamed = with("", "assert!(true);").replace("Example: two.", "Two.");
+    assert_eq!(wrong_with_the_example(&unnamed), Some(wrong));
+}
+
+#[test]
+fn the_map_names_a_room_that_realises_each_printed_number() {
+    let docs = doc_comments();
+    let map = std::fs::read_to_string(root().join("src/lib.rs")).unwrap();
+    let mut mapped = BTreeSet::new();
+    for row in map.lines().filter(|line| line.starts_with("//! |")) {
+        let rooms: Vec<String> = row
+            .split("[`")
+            .skip(1)
+            .filter_map(|rest| rest.split_once("`]"))
+            .map(|link| link.0.replace("::", "/"))
+            .collect();
+        for number in citations(row) {
+            let is_room = |path: &str| rooms.iter().any(|room| path.starts_with(&format!("src/{room}")));
+            let realises = |doc: &Doc| is_room(&doc.path) && headings(&doc.text).contains(&number);
+            assert!(docs.iter().any(realises), "{number:?} is not in {rooms:?}");
+            mapped.insert(number);
+        }
+    }
+    assert_eq!(mapped, printed_numbers(), "all of them, once or more");
+}
+
+/// The public functions, types, fields and variants of a file, by their first lines, with their doc comments.
+fn documented_public_items(text: &str) -> Vec<(String, String)> {
+    let mut items = Vec::new();
+    let mut doc = String::new();
+    for line in text.lines() {
+        if line.trim_start().starts_with("//!") || line.trim_start().starts_with("#[") {
+            continue;
+        }
+        if let Some(line) = doc_line(line) {
+            doc.push_str(line);
+            doc.push('\n');
+            continue;
+        }
+        let code = line.trim();
+        let is_variant = code.starts_with(|c: char| c.is_ascii_uppercase());
+        if !doc.is_empty() && (code.starts_with("pub ") || is_variant) {
+            items.push((code.to_owned(), std::mem::take(&mut doc)));
+        }
+        doc.clear();
+    }
+    items
+}
+
+/// Why a doc comment has no example that a reader can rely on; nothing if it has one.
+fn wrong_with_the_example(doc: &str) -> Option<&'static str> {
+    // Between the fences every other part is code; a fence without a word is one of Rust that is run.
+    let is_run =
+        |part: &&str| part.starts_with('\n') || part.starts_with("rust\n") || part.starts_with("should_panic\n");
+    let examples: Vec<&str> = doc.split("```").skip(1).step_by(2).filter(is_run).collect();
+    if examples.is_empty() {
+        return Some("it has none that is run");
+    }
+    if !examples.iter().any(|code| code.contains("assert")) {
+        return Some("it asserts nothing");
+    }
+    let place = |words: &[&str]| {
+        doc.lines()
+            .position(|line| words.iter().any(|word| line.starts_with(word)))
+    };
+    let is_in_place = match (
+        place(&["Example:"]),
+        place(&["# Errors", "Errata:", "Mistakes:", "Evidence:"]),
+    ) {
+        (Some(example), Some(after)) => example < after,
+        (example, None) => example.is_some(),
+        (None, Some(_)) => false,
+    };
+    (!is_in_place).then_some("`Example:` stands before errors, errata and evidence")
 }
 
 // Scenarios

@@ -30,6 +30,24 @@ use nalgebra::{SMatrix, SVector};
 ///
 /// A measurement that is not converted has no answer.
 ///
+/// Example: 5 m straight ahead, along x, of a sensor at (100, 20).
+///
+/// ```
+/// use immaculate::filter::converted::converted_measurement;
+/// use immaculate::model::{Conversion, Measurement, PolarComponent};
+/// use nalgebra::{matrix, vector};
+///
+/// let radar = Measurement::<f64, 4, 2>::Converted {
+///     components: [PolarComponent::Range, PolarComponent::Bearing],
+///     position: [0, 2],
+///     sensor: [100.0, 20.0],
+///     conversion: Conversion::Standard,
+/// };
+/// let noise = matrix![4.0, 0.0; 0.0, 0.25];
+/// // 100 + 5 · cos 0, 20 + 5 · sin 0
+/// assert_eq!(converted_measurement(&radar, &vector![5.0, 0.0], &noise), vector![105.0, 20.0]);
+/// ```
+///
 /// Evidence: `a_converted_measurement_is_where_range_and_bearing_point` (property).
 pub fn converted_measurement<T: Real, const N: usize, const M: usize>(
     measurement: &Measurement<T, N, M>,
@@ -52,6 +70,25 @@ pub fn converted_measurement<T: Real, const N: usize, const M: usize>(
 ///
 /// Source: sustika2015, section 3.1; [`Conversion::covariance`](crate::model::conversion::Conversion::covariance).
 ///
+/// Example: 10 m away along x, with σ_r = 2 m and σ_θ = ½ rad: a variance of 4 m² along and of 25 m² across. R as it stands would say ¼ m²
+/// across.
+///
+/// ```
+/// use immaculate::filter::converted::converted_covariance;
+/// use immaculate::model::{Conversion, Measurement, PolarComponent};
+/// use nalgebra::{matrix, vector};
+///
+/// let radar = Measurement::<f64, 4, 2>::Converted {
+///     components: [PolarComponent::Range, PolarComponent::Bearing],
+///     position: [0, 2],
+///     sensor: [100.0, 20.0],
+///     conversion: Conversion::Standard,
+/// };
+/// let noise = matrix![4.0, 0.0; 0.0, 0.25];
+/// // σ_r², 10² · ¼
+/// assert_eq!(converted_covariance(&radar, &vector![10.0, 0.0], &noise), matrix![4.0, 0.0; 0.0, 25.0]);
+/// ```
+///
 /// Evidence: `the_converted_covariance_does_not_depend_on_the_order_of_the_components` (property).
 pub fn converted_covariance<T: Real, const N: usize, const M: usize>(
     measurement: &Measurement<T, N, M>,
@@ -69,6 +106,23 @@ pub fn converted_covariance<T: Real, const N: usize, const M: usize>(
 /// those who take it at the prediction instead of at the measurement.
 ///
 /// Source: liu2017 (31).
+///
+/// Example: 3 m and 4 m from the sensor, along x and y.
+///
+/// ```
+/// use immaculate::filter::converted::polar_position;
+/// use immaculate::{model::{Conversion, Measurement, PolarComponent}, number::Real};
+/// use nalgebra::vector;
+///
+/// let radar = Measurement::<f64, 4, 2>::Converted {
+///     components: [PolarComponent::Bearing, PolarComponent::Range],
+///     position: [0, 2],
+///     sensor: [100.0, 20.0],
+///     conversion: Conversion::Standard,
+/// };
+/// // In the order of the components: the angle of (3, 4), and √(3² + 4²).
+/// assert_eq!(polar_position(&radar, &vector![103.0, 7.0, 24.0, 8.0]), vector![Real::atan2(&4.0, &3.0), 5.0]);
+/// ```
 pub fn polar_position<T: Real, const N: usize, const M: usize>(
     measurement: &Measurement<T, N, M>,
     state: &SVector<T, N>,

@@ -3,6 +3,12 @@
 //! After this file the reader knows that such a filter is a Kalman filter whose four moments (predicted mean and covariance, ẑ and
 //! its covariances) are weighted sums over points. The rule ([`crate::rule`]) is an argument; nothing here depends on which.
 //!
+//! ```text
+//! x̂⁰, P⁰ ─ cholesky ─▶ S ─ point ─▶ X ─ propagated_point ─▶ X* ─ weighted_mean, weighted_covariance ─▶ x̂⁻, P⁻
+//! x̂⁻, P⁻ ─ cholesky ─▶ S ─ point ─▶ X ─ Measurement::of ──▶ Z ─ Measurement::mean ─▶ ẑ
+//!                                   └──────────────────────┴─ innovation_covariance, cross_covariance ─▶ S, C ─▶ super::update
+//! ```
+//!
 //! The equations are in the centred form of liu2017. Those of zhu2016 about the origin are in [`super::raw`].
 
 use crate::model::Measurement;
@@ -27,6 +33,22 @@ use nalgebra::{SMatrix, SVector};
 /// liu2017 (18): the propagated ones know nothing of the process noise. sustika2015 draws points for the measurement only and
 /// predicts by the Kalman filter's equations, which for a linear motion gives the same moments.
 ///
+/// Example: in one dimension the two points of the third-degree rule, ξ = ±1, lie one deviation beside the mean. In two it matters that the
+/// factor is the lower one: the upper one, which some libraries return, gives another point.
+///
+/// ```
+/// use immaculate::filter::cubature::point;
+/// use nalgebra::{matrix, vector};
+///
+/// assert_eq!(point(&matrix![2.0], &vector![1.0], &vector![5.0]), vector![7.0]); // 2 · 1 + 5
+/// assert_eq!(point(&matrix![2.0], &vector![-1.0], &vector![5.0]), vector![3.0]);
+///
+/// let lower = matrix![2.0, 0.0; 1.0, 3.0];
+/// // (2 · 1 + 10, 1 · 1 − 3 · 1 + 20)
+/// assert_eq!(point(&lower, &vector![1.0, -1.0], &vector![10.0, 20.0]), vector![12.0, 18.0]);
+/// assert_eq!(point(&lower.transpose(), &vector![1.0, -1.0], &vector![10.0, 20.0]), vector![11.0, 17.0]);
+/// ```
+///
 /// Errata: liu2017 (14) leaves the hat off the mean, and zhu2016 (2), (28) give the centre a superfluous index (notational).
 ///
 /// Evidence: `a_linear_filter_with_any_rule_of_degree_two_is_the_kalman_filter` (symbolic).
@@ -49,6 +71,16 @@ pub fn point<T: Field, const N: usize>(
 /// | f     | `transition` | N × N | the papers' models are all linear |
 /// | X     | `point`      | N     | a point of the mixed estimate     |
 ///
+/// Example: the points 7 and 3 under a motion that doubles the state.
+///
+/// ```
+/// use immaculate::filter::cubature::propagated_point;
+/// use nalgebra::{matrix, vector};
+///
+/// let [high, low] = [7.0, 3.0].map(|x| propagated_point(&matrix![2.0], &vector![x]));
+/// assert_eq!((high, low), (vector![14.0], vector![6.0]));
+/// ```
+///
 /// Evidence: as [`point`](fn@point).
 pub fn propagated_point<T: Field, const N: usize>(
     transition: &SMatrix<T, N, N>,
@@ -69,6 +101,15 @@ pub fn propagated_point<T: Field, const N: usize>(
 /// | X*ₛ   | `points`  | L × N | the propagated points |
 ///
 /// Why: the rule's approximation of E f(x). zhu2016 sums its three orbits apart, in (22) and (23).
+///
+/// Example: of the propagated points 14 and 6, which weigh the same. A linear filter has it from the mean alone: 2 · 5.
+///
+/// ```
+/// use immaculate::filter::cubature::weighted_mean;
+/// use nalgebra::vector;
+///
+/// assert_eq!(weighted_mean(&[0.5, 0.5], &[vector![14.0], vector![6.0]]), vector![10.0]); // ½ · 14 + ½ · 6
+/// ```
 ///
 /// Evidence: as [`point`](fn@point).
 pub fn weighted_mean<T: Field, const N: usize>(weights: &[T], points: &[SVector<T, N>]) -> SVector<T, N> {
@@ -93,6 +134,19 @@ pub fn weighted_mean<T: Field, const N: usize>(weights: &[T], points: &[SVector<
 /// | Q     | `noise`   | N × N | process noise                          |
 ///
 /// Why: the noise is independent of the state, so covariances add, and add once.
+///
+/// Example: of the same points, with Q = 9. A linear filter has 2 · 4 · 2 + 9 too. Without Q, or about another mean, it is another number.
+///
+/// ```
+/// use immaculate::filter::cubature::weighted_covariance;
+/// use nalgebra::{matrix, vector};
+///
+/// let points = [vector![14.0], vector![6.0]];
+/// let of = |mean: f64, noise: f64| weighted_covariance(&[0.5, 0.5], &points, &vector![mean], &matrix![noise]);
+/// assert_eq!(of(10.0, 9.0), matrix![25.0]); // ½ · 4² + ½ · 4² + 9
+/// assert_eq!(of(10.0, 0.0), matrix![16.0]);
+/// assert_eq!(of(5.0, 9.0), matrix![50.0]); // ½ · 9² + ½ · 1² + 9, about the mean before the motion
+/// ```
 ///
 /// Errata: liu2017 (17) is typeset with Q inside the braces of the sum (notational as long as the weights sum to one).
 ///
@@ -123,6 +177,21 @@ pub fn weighted_covariance<T: Field, const N: usize>(
 /// | Zₛ    | `values`      | L × M | the measurements of the points, angles' differences wrapped  |
 /// | ẑ     | `mean`        | M     | predicted measurement, [`Measurement::mean`]                 |
 /// | R     | `noise`       | M × M | measurement noise                                            |
+///
+/// Example: the points drawn afresh from 10 and 25 are 15 and 5; of a sensor that sees twice the state they are 30 and 10. The propagated
+/// ones, 14 and 6, are too near to each other: they know nothing of Q.
+///
+/// ```
+/// use immaculate::{filter::cubature::innovation_covariance, model::Measurement};
+/// use nalgebra::{matrix, vector};
+///
+/// let (sensor, weights) = (Measurement::Linear(matrix![2.0]), [0.5, 0.5]);
+/// let of = |values: [f64; 2]| {
+///     innovation_covariance(&sensor, &weights, &values.map(|z| vector![z]), &vector![20.0], &matrix![100.0])
+/// };
+/// assert_eq!(of([30.0, 10.0]), matrix![200.0]); // ½ · 10² + ½ · 10² + 100
+/// assert_eq!(of([28.0, 12.0]), matrix![164.0]); // ½ · 8² + ½ · 8² + 100
+/// ```
 ///
 /// Errata: R is typeset inside the sum, as Q in (17) (notational).
 ///
@@ -155,6 +224,18 @@ pub fn innovation_covariance<T: Real, const N: usize, const M: usize>(
 /// | x̂⁻    | `mean`         | N     | predicted mean                                               |
 /// | Zₛ    | `values`       | L × M | the measurements of the points, angles' differences wrapped  |
 /// | ẑ     | `value_mean`   | M     | predicted measurement                                        |
+///
+/// Example: the same points 15 and 5 with their measurements 30 and 10.
+///
+/// ```
+/// use immaculate::{filter::cubature::cross_covariance, model::Measurement};
+/// use nalgebra::{matrix, vector};
+///
+/// let (points, values) = ([vector![15.0], vector![5.0]], [vector![30.0], vector![10.0]]);
+/// let sensor = Measurement::Linear(matrix![2.0]);
+/// let covariance = cross_covariance(&sensor, &[0.5, 0.5], &points, &vector![10.0], &values, &vector![20.0]);
+/// assert_eq!(covariance, matrix![50.0]); // ½ · 5 · 10 + ½ · (−5) · (−10)
+/// ```
 ///
 /// Evidence: as [`point`](fn@point).
 pub fn cross_covariance<T: Real, const N: usize, const M: usize>(

@@ -1,7 +1,8 @@
 //! The fixed-gain filter: its gain is a number of the problem and not of the data.
 //!
 //! After this file the reader knows what is left of a mode's filter once its covariances are gone: two constant matrices, one that
-//! corrects the prediction and one that says how likely a residual is.
+//! corrects the prediction and one that says how likely a residual is. Where they come from is in [`crate::steady::gains`] and
+//! [`crate::steady::riccati`]; the cycle that uses them is [`crate::imm::fixed_gain`].
 
 use nalgebra::SMatrix;
 
@@ -22,6 +23,19 @@ use nalgebra::SMatrix;
 /// Why: the covariances of a Kalman filter do not depend on what is measured. With constant F, H, Q and R they tend to the equilibrium P⁻
 /// of a Riccati equation, and K = P⁻ Hᵀ S⁻¹ with them. A filter that has K and S from the start needs no covariance at all, which is
 /// most of the arithmetic. Nothing here asks that they are of that origin.
+///
+/// Example: the filter of the other files here at its first step, with its gain and its S once and for all.
+///
+/// ```
+/// use immaculate::filter::{fixed_gain::FixedGain, kalman::predicted_mean, update::updated_mean};
+/// use nalgebra::{matrix, vector};
+///
+/// let fixed = FixedGain { gain: matrix![0.25], innovation_covariance: matrix![200.0] };
+/// let prediction = predicted_mean(&matrix![2.0], &vector![5.0]);
+/// let innovation = vector![24.0] - matrix![2.0] * &prediction;
+/// // 2 · 5 + ¼ · (24 − 2 · 10)
+/// assert_eq!(updated_mean(&prediction, &fixed.gain, &innovation), vector![11.0]);
+/// ```
 ///
 /// Errata: the update is printed without the superscript 0 of the mixed state, although "one proceeds with the usual IMM algorithm".
 /// Both readings exist and are kept apart: [`Equations::fixed_gain`](crate::imm::Equations::fixed_gain) and

@@ -1,6 +1,15 @@
 //! The Kalman filter's predictions: exact when motion and measurement are linear.
 //!
 //! After this file the reader knows what the cubature filters approximate, and what they must equal on a linear problem.
+//!
+//! ```text
+//! x̂⁰ ─ predicted_mean ───────▶ x̂⁻ ─ H ─▶ ẑ
+//! P⁰ ─ predicted_covariance ─▶ P⁻ ─ innovation_covariance ─▶ S ─┐
+//!                              └─── cross_covariance ──────▶ C ─┴─▶ gain and update, which all filters share: super::update
+//! ```
+//!
+//! The examples of this file, of [`cubature`](super::cubature), [`raw`](super::raw) and [`update`](super::update) are one step of one
+//! filter: x̂⁰ = 5 and P⁰ = 4, F = 2 and Q = 9, H = 2 and R = 100, z = 24. It is put together in the [head of the folder](super).
 
 use crate::matrix::mirrored;
 use crate::number::Field;
@@ -9,6 +18,15 @@ use nalgebra::{SMatrix, SVector};
 /// Predicted mean, x̂⁻ = F x̂ — derbez2000 (2), sustika2015 (14).
 ///
 /// Source: Kalman 1960; liu2017 (1) without noise.
+///
+/// Example: the state doubles at every step.
+///
+/// ```
+/// use immaculate::filter::kalman::predicted_mean;
+/// use nalgebra::{matrix, vector};
+///
+/// assert_eq!(predicted_mean(&matrix![2.0], &vector![5.0]), vector![10.0]); // 2 · 5
+/// ```
 pub fn predicted_mean<T: Field, const N: usize>(transition: &SMatrix<T, N, N>, mean: &SVector<T, N>) -> SVector<T, N> {
     transition * mean
 }
@@ -16,6 +34,15 @@ pub fn predicted_mean<T: Field, const N: usize>(transition: &SMatrix<T, N, N>, m
 /// Predicted covariance, P⁻ = F P Fᵀ + Q, with its lower triangle [`mirrored`] — derbez2000 (2), sustika2015 (15).
 ///
 /// Source: Kalman 1960.
+///
+/// Example: doubled, a variance of 4 is one of 16, and the motion adds 9. Without F on both sides it would be 8 + 9.
+///
+/// ```
+/// use immaculate::filter::kalman::predicted_covariance;
+/// use nalgebra::matrix;
+///
+/// assert_eq!(predicted_covariance(&matrix![2.0], &matrix![4.0], &matrix![9.0]), matrix![25.0]); // 2 · 4 · 2 + 9
+/// ```
 ///
 /// Evidence: `the_kalman_update_is_conditioning_of_a_gaussian` (symbolic).
 pub fn predicted_covariance<T: Field, const N: usize>(
@@ -29,6 +56,15 @@ pub fn predicted_covariance<T: Field, const N: usize>(
 /// Cross-covariance of state and measurement, C = P⁻ Hᵀ, of which the gain is made — sustika2015 (17).
 ///
 /// Source: Kalman 1960.
+///
+/// Example: the prediction has the variance 25, and twice the state is measured.
+///
+/// ```
+/// use immaculate::filter::kalman::cross_covariance;
+/// use nalgebra::matrix;
+///
+/// assert_eq!(cross_covariance(&matrix![25.0], &matrix![2.0]), matrix![50.0]); // 25 · 2
+/// ```
 pub fn cross_covariance<T: Field, const N: usize, const M: usize>(
     covariance: &SMatrix<T, N, N>,
     h: &SMatrix<T, M, N>,
@@ -39,6 +75,15 @@ pub fn cross_covariance<T: Field, const N: usize, const M: usize>(
 /// Innovation covariance, S = H P⁻ Hᵀ + R — derbez2000 (4), sustika2015 (16).
 ///
 /// Source: Kalman 1960.
+///
+/// Example: what the prediction does not know, seen by the sensor, and what the sensor does not know.
+///
+/// ```
+/// use immaculate::filter::kalman::innovation_covariance;
+/// use nalgebra::matrix;
+///
+/// assert_eq!(innovation_covariance(&matrix![2.0], &matrix![25.0], &matrix![100.0]), matrix![200.0]); // 2 · 25 · 2 + 100
+/// ```
 pub fn innovation_covariance<T: Field, const N: usize, const M: usize>(
     h: &SMatrix<T, M, N>,
     covariance: &SMatrix<T, N, N>,

@@ -26,6 +26,21 @@ use nalgebra::{SMatrix, SVector};
 ///
 /// With Zₛ, ẑ and R in the places of X*ₛ, x̂⁻ and Q this is the innovation covariance — zhu2016 (45)-(47).
 ///
+/// Example: the points 14 and 6 have the mean square 116. Less the squared mean that is 16, and with the noise 25; at a large distance it
+/// is nothing but rounding.
+///
+/// ```
+/// use immaculate::filter::raw::raw_covariance;
+/// use nalgebra::{matrix, vector};
+///
+/// let of = |at: f64| {
+///     let points = [vector![at + 4.0], vector![at - 4.0]];
+///     raw_covariance(&[0.5, 0.5], &points, &vector![at], &matrix![9.0])
+/// };
+/// assert_eq!(of(10.0), matrix![25.0]); // ½ · 14² + ½ · 6² − 10² + 9
+/// assert_eq!(of(1e9), matrix![9.0]); // 10¹⁸ + 16 is 10¹⁸ as a double
+/// ```
+///
 /// Errata: (24) lacks the last two terms: as printed it is the raw second moment, about 10⁶ m² at the paper's start, and never
 /// sees the noise. (45) has them. (47) prints its upper limit as n(n − 1)2 for n(n − 1)/2.
 ///
@@ -42,6 +57,15 @@ pub fn raw_covariance<T: Field, const N: usize>(
 }
 
 /// The sum of weighted squares alone, which zhu2016 (24) prints for the predicted covariance: Σₛ wₛ X*ₛ X*ₛᵀ.
+///
+/// Example: of the points 14 and 6, where the covariance of the prediction is 25.
+///
+/// ```
+/// use immaculate::filter::raw::raw_second_moment;
+/// use nalgebra::{matrix, vector};
+///
+/// assert_eq!(raw_second_moment(&[0.5, 0.5], &[vector![14.0], vector![6.0]]), matrix![116.0]); // ½ · 14² + ½ · 6²
+/// ```
 ///
 /// Evidence: `printed_predicted_covariance_is_a_raw_second_moment_without_noise`.
 pub fn raw_second_moment<T: Field, const N: usize>(weights: &[T], points: &[SVector<T, N>]) -> SMatrix<T, N, N> {
@@ -65,6 +89,17 @@ pub fn raw_second_moment<T: Field, const N: usize>(weights: &[T], points: &[SVec
 /// | x̂⁻    | `mean`       | N     | predicted mean                                |
 /// | Zₛ    | `values`     | L × M | the measurements of the points                |
 /// | ẑ     | `value_mean` | M     | predicted measurement                         |
+///
+/// Example: the points 15 and 5 with their measurements 30 and 10.
+///
+/// ```
+/// use immaculate::filter::raw::raw_cross_covariance;
+/// use nalgebra::{matrix, vector};
+///
+/// let (points, values) = ([vector![15.0], vector![5.0]], [vector![30.0], vector![10.0]]);
+/// let covariance = raw_cross_covariance(&[0.5, 0.5], &points, &vector![10.0], &values, &vector![20.0]);
+/// assert_eq!(covariance, matrix![50.0]); // ½ · 15 · 30 + ½ · 5 · 10 − 10 · 20
+/// ```
 ///
 /// Evidence: `raw_and_centred_second_moments_agree` (symbolic).
 pub fn raw_cross_covariance<T: Field, const N: usize, const M: usize>(

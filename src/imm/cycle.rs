@@ -2,6 +2,11 @@
 //!
 //! After this file the reader knows the cycle: what is computed before what, what happens without a detection, how a step that
 //! cannot be computed is reported, and how an [`Observer`] sees every value as soon as it is there.
+//!
+//! ```text
+//! step before ─▶ mix ─▶ predict each mode ─▶ combine the prediction ─┬─ z ─▶ convert ─▶ update each mode ─▶ weigh ─┬─▶ combine ─▶ step
+//!                                                                    └─ no detection ─▶ the prediction stays ──────┘
+//! ```
 
 use super::quantity::Quantity;
 use super::{Equations, Initial, InvalidProblem, Problem, Step};
@@ -14,6 +19,39 @@ use nalgebra::SVector;
 /// follows is then computed from these.
 ///
 /// The filter that nobody observes has the observer `()`, which does nothing and costs nothing.
+///
+/// Example: what is computed in a step, by name.
+///
+/// ```
+/// use immaculate::{gaussian::Gaussian, imm::{Equations, Imm, Initial, Observer, Problem, Quantity, Step}};
+/// use immaculate::model::{Measurement, motion::Mode};
+/// use nalgebra::{matrix, vector};
+///
+/// struct Names(Vec<&'static str>);
+/// impl Observer<f64, 1, 1> for Names {
+///     fn computed(&mut self, quantity: Quantity, _mode: usize, _now: &mut Step<f64, 1, 1>) {
+///         self.0.push(quantity.name());
+///     }
+/// }
+///
+/// let problem = Problem {
+///     modes: vec![Mode { name: "walk".into(), transition: matrix![1.0], noise: matrix![1.0] }],
+///     transition: vec![vec![1.0]],
+///     measurement: Measurement::Linear(matrix![1.0]),
+///     measurement_noise: matrix![2.0],
+///     rule: None,
+///     fixed_gains: None,
+/// };
+/// let initial = Initial {
+///     modes: vec![Gaussian { mean: vector![0.0], covariance: matrix![1.0] }],
+///     mode_probabilities: vec![1.0],
+/// };
+/// let mut names = Names(Vec::new());
+/// Imm::new(problem, Equations::kalman(), &initial)?.step_observed(None, &mut names)?;
+/// assert_eq!(names.0[2..6], ["mixed.mean", "mixed.covariance", "predicted.mean", "predicted.covariance"]);
+/// assert!(!names.0.contains(&"gain")); // without a detection
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait Observer<T, const N: usize, const M: usize> {
     /// The quantity of mode j (0 for a quantity of all modes together) has just been computed and stands in the record.
     fn computed(&mut self, quantity: Quantity, j: usize, now: &mut Step<T, N, M>);
@@ -73,14 +111,13 @@ pub enum Cause {
 
 /// The filter: a problem, a table of equations, and the step before and now.
 ///
-/// # Examples
+/// Example: a scalar random walk with one mode, which is a Kalman filter.
 ///
 /// ```
 /// use immaculate::{gaussian::Gaussian, imm::{Equations, Imm, Initial, Problem}};
 /// use immaculate::model::{Measurement, motion::Mode};
 /// use nalgebra::{matrix, vector};
 ///
-/// // A scalar random walk with one mode: the Kalman filter.
 /// let problem = Problem {
 ///     modes: vec![Mode { name: "walk".into(), transition: matrix![1.0], noise: matrix![1.0] }],
 ///     transition: vec![vec![1.0]],
@@ -94,8 +131,11 @@ pub enum Cause {
 ///     mode_probabilities: vec![1.0],
 /// };
 /// let mut filter = Imm::new(problem, Equations::kalman(), &initial).unwrap();
-/// let step = filter.step(Some(&vector![4.0])).unwrap();
-/// assert_eq!(step.combined.mean, vector![2.0]); // gain 2 / (2 + 2)
+/// // The prediction has the variance 1 + 1, the gain is 2 / (2 + 2), and 0 + ½ · (4 − 0) = 2.
+/// assert_eq!(filter.step(Some(&vector![4.0])).unwrap().combined.mean, vector![2.0]);
+/// // A missed detection: the mean stays, the variance 2 − ½ · 4 · ½ = 1 grows by 1.
+/// let missed = filter.step(None).unwrap();
+/// assert_eq!((missed.combined.mean, missed.combined.covariance), (vector![2.0], matrix![2.0]));
 /// ```
 #[derive(Debug, Clone)]
 pub struct Imm<T, const N: usize, const M: usize> {

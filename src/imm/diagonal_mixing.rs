@@ -21,6 +21,18 @@ use nalgebra::{SMatrix, SVector};
 /// Source: scalar inverse-variance weighting; the cross-covariances of the sub-filters, which the published filter is said to use,
 /// make the weights leave [0, 1] and are left out.
 ///
+/// Example: the first estimate knows the position three times as well, and the velocity a third as well.
+///
+/// ```
+/// use immaculate::{gaussian::Gaussian, imm::diagonal_mixing::diagonal_weight, number::{Field, Rational}};
+/// use nalgebra::{Matrix2, Vector2, vector};
+///
+/// let of = |a, b| Gaussian { mean: Vector2::zeros(), covariance: Matrix2::from_diagonal(&vector![a, b].map(Rational::integer)) };
+/// let estimates = [of(1, 3), of(3, 1)];
+/// // 1/1 / (1/1 + 1/3), 1/3 / (1/3 + 1/1)
+/// assert_eq!(diagonal_weight(&estimates, 0), vector![Rational::new(3, 4), Rational::new(1, 4)]);
+/// ```
+///
 /// Evidence: `diagonal_weights_sum_to_one_in_each_component` (symbolic).
 pub fn diagonal_weight<T: Field, const N: usize>(estimates: &[Gaussian<T, N>], i: usize) -> SVector<T, N> {
     SVector::from_fn(|l, _| {
@@ -35,6 +47,17 @@ pub fn diagonal_weight<T: Field, const N: usize>(estimates: &[Gaussian<T, N>], i
 /// The mean mixed with diagonal weights, the same for every mode: x̂⁰ = Σᵢ aᵢ ∘ x̂ⁱ.
 ///
 /// Source: as [`diagonal_weight`].
+///
+/// Example: estimates at 0 and 4 of which the first has a third of the variance.
+///
+/// ```
+/// use immaculate::{gaussian::Gaussian, imm::diagonal_mixing::mixed_mean, number::{Field, Rational}};
+/// use nalgebra::{matrix, vector};
+///
+/// let at = |x, variance| Gaussian { mean: vector![Rational::integer(x)], covariance: matrix![Rational::integer(variance)] };
+/// // ¾ · 0 + ¼ · 4
+/// assert_eq!(mixed_mean(&[at(0, 1), at(4, 3)]), vector![Rational::integer(1)]);
+/// ```
 pub fn mixed_mean<T: Field, const N: usize>(estimates: &[Gaussian<T, N>]) -> SVector<T, N> {
     let mut sum = SVector::zeros();
     for (i, estimate) in estimates.iter().enumerate() {
@@ -47,6 +70,18 @@ pub fn mixed_mean<T: Field, const N: usize>(estimates: &[Gaussian<T, N>]) -> SVe
 ///
 /// Source: the moment matching of zhu2016 (56) with each weight split evenly over both sides, so that the result is positive definite
 /// and equals (56) when the components of a weight agree.
+///
+/// Example: estimates at 0 and 4 of variance 1 have the weights ½ and the mean 2.
+///
+/// ```
+/// use immaculate::{gaussian::Gaussian, imm::diagonal_mixing::mixed_covariance};
+/// use nalgebra::{matrix, vector};
+///
+/// let at = |x| Gaussian { mean: vector![x], covariance: matrix![1.0] };
+/// let mixed = mixed_covariance(&[at(0.0), at(4.0)], &vector![2.0]);
+/// // ½ · (1 + 2²) + ½ · (1 + 2²); as a double √½ · √½ is one unit in the last place above ½
+/// assert!((mixed[0] - 5.0).abs() < 8.0 * f64::EPSILON);
+/// ```
 pub fn mixed_covariance<T: Real, const N: usize>(
     estimates: &[Gaussian<T, N>],
     mean: &SVector<T, N>,

@@ -16,7 +16,6 @@
 
 use super::probability;
 use super::{Problem, Step};
-use crate::filter::fixed_gain::FixedGain;
 use crate::filter::{converted, cubature, kalman, raw, update};
 use crate::gaussian::{log_density, mixture_covariance, mixture_mean};
 use crate::matrix::{NotPositiveDefinite, check_positive_definite, cholesky, ldl};
@@ -278,6 +277,36 @@ impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
     /// ν = z^c − H x̂⁻     S = H P⁻ Hᵀ + R^c
     /// ```
     ///
+    /// Example: a target expected at (8, 0) is measured 10 m straight ahead, with σ_r = 2 m and σ_θ = ½ rad.
+    ///
+    /// ```
+    /// use immaculate::{gaussian::Gaussian, imm::{Equations, Imm, Initial, Problem}};
+    /// use immaculate::model::{Conversion, Measurement, PolarComponent, motion::Mode};
+    /// use nalgebra::{Matrix2, matrix, vector};
+    ///
+    /// let problem = Problem {
+    ///     modes: vec![Mode { name: "still".into(), transition: Matrix2::identity(), noise: Matrix2::zeros() }],
+    ///     transition: vec![vec![1.0]],
+    ///     measurement: Measurement::Converted {
+    ///         components: [PolarComponent::Range, PolarComponent::Bearing],
+    ///         position: [0, 1],
+    ///         sensor: [0.0, 0.0],
+    ///         conversion: Conversion::Standard,
+    ///     },
+    ///     measurement_noise: matrix![4.0, 0.0; 0.0, 0.25],
+    ///     rule: None,
+    ///     fixed_gains: None,
+    /// };
+    /// let expected = Gaussian { mean: vector![8.0, 0.0], covariance: matrix![4.0, 0.0; 0.0, 75.0] };
+    /// let initial = Initial { modes: vec![expected], mode_probabilities: vec![1.0] };
+    /// let mut filter = Imm::new(problem, Equations::converted(), &initial)?;
+    /// let step = filter.step(Some(&vector![10.0, 0.0]))?;
+    /// // R^c = diag(2², 10² · ¼), S = diag(4 + 4, 75 + 25)
+    /// assert_eq!(step.innovation_covariances[0], matrix![8.0, 0.0; 0.0, 100.0]);
+    /// assert_eq!(step.combined.mean, vector![9.0, 0.0]); // 8 + 4/8 · (10 − 8)
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// Evidence: `a_converted_filter_is_the_kalman_filter_of_the_converted_measurements` (exact).
     pub fn converted() -> Self {
         Self {
@@ -307,6 +336,34 @@ impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
     /// measured position across, then does not turn the covariance with it.
     ///
     /// Source: sustika2015 does not say where (24)-(26) are evaluated; both are in use.
+    ///
+    /// Example: the same target, expected at 8 m, where the bearing's ½ rad is less of an arc than at the measured 10 m.
+    ///
+    /// ```
+    /// use immaculate::{gaussian::Gaussian, imm::{Equations, Imm, Initial, Problem}};
+    /// use immaculate::model::{Conversion, Measurement, PolarComponent, motion::Mode};
+    /// use nalgebra::{Matrix2, matrix, vector};
+    ///
+    /// let problem = Problem {
+    ///     modes: vec![Mode { name: "still".into(), transition: Matrix2::identity(), noise: Matrix2::zeros() }],
+    ///     transition: vec![vec![1.0]],
+    ///     measurement: Measurement::Converted {
+    ///         components: [PolarComponent::Range, PolarComponent::Bearing],
+    ///         position: [0, 1],
+    ///         sensor: [0.0, 0.0],
+    ///         conversion: Conversion::Standard,
+    ///     },
+    ///     measurement_noise: matrix![4.0, 0.0; 0.0, 0.25],
+    ///     rule: None,
+    ///     fixed_gains: None,
+    /// };
+    /// let expected = Gaussian { mean: vector![8.0, 0.0], covariance: matrix![4.0, 0.0; 0.0, 75.0] };
+    /// let initial = Initial { modes: vec![expected], mode_probabilities: vec![1.0] };
+    /// let mut filter = Imm::new(problem, Equations::converted_at_prediction(), &initial)?;
+    /// let step = filter.step(Some(&vector![10.0, 0.0]))?;
+    /// assert_eq!(step.converted_covariance, matrix![4.0, 0.0; 0.0, 16.0]); // diag(2², 8² · ¼)
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn converted_at_prediction() -> Self {
         Self {
             converted_covariance: |problem, _, now| {
@@ -314,51 +371,6 @@ impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
                 converted::converted_covariance(&problem.measurement, &at, &problem.measurement_noise)
             },
             ..Self::converted()
-        }
-    }
-
-    /// Filters with fixed gains that start from mixed estimates.
-    ///
-    /// Source: derbez2000, section 3, not numbered.
-    ///
-    /// ```text
-    /// x̂⁰ʲ = Σᵢ μᵢ∣ⱼ x̂ⁱ     x̂⁻ʲ = Fʲ x̂⁰ʲ     νʲ = z − H x̂⁻ʲ     x̂ʲ = x̂⁻ʲ + Kʲ νʲ     ln Lⱼ = ln N(νʲ; 0, Sʲ)
-    /// ```
-    ///
-    /// Probabilities and the combined mean are those of any interacting multiple model filter; there is no covariance anywhere. Kʲ and Sʲ
-    /// are the problem's, see [`FixedGain`].
-    ///
-    /// Why: with its mixed states this is "the usual IMM algorithm", each of whose filters has the gain that it would end with if it
-    /// were alone. The gain that the mixed covariance would give, which has the spread of the means in it, is another.
-    ///
-    /// Evidence: `identical_modes_with_fixed_gains_are_the_filter_alone` (exact).
-    pub fn fixed_gain() -> Self {
-        Self {
-            keeps_covariances: false,
-            innovation_covariance: |problem, _, _, j| {
-                given(problem, j, |given| given.innovation_covariance.clone()).unwrap_or_else(undecided)
-            },
-            gain: |problem, _, _, j| Ok(given(problem, j, |given| given.gain.clone()).unwrap_or_else(undecided)),
-            ..Self::kalman()
-        }
-    }
-
-    /// Filters with fixed gains that each go on from their own estimate: the same update read as it is printed, without mixed states.
-    ///
-    /// Source: derbez2000, section 3, not numbered.
-    ///
-    /// ```text
-    /// μᵢ∣ⱼ = 1 for i = j and 0 else, so that x̂⁰ʲ = x̂ʲ
-    /// ```
-    ///
-    /// Only the probabilities, which follow the chain, and the combined mean know of the other modes.
-    ///
-    /// Evidence: `unmixed_modes_with_fixed_gains_stand_alone` (exact).
-    pub fn fixed_gain_unmixed() -> Self {
-        Self {
-            mixes: false,
-            mixing_probability: |_, _, _, j, i| if i == j { T::one() } else { T::zero() },
-            ..Self::fixed_gain()
         }
     }
 
@@ -405,17 +417,8 @@ impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
     }
 }
 
-/// A part of what is given for mode j in place of covariances; none where nothing is.
-fn given<T, V, const N: usize, const M: usize>(
-    problem: &Problem<T, N, M>,
-    j: usize,
-    part: fn(&FixedGain<T, N, M>) -> V,
-) -> Option<V> {
-    problem.fixed_gains.as_ref()?.get(j).map(part)
-}
-
 /// A matrix that has no answer.
-fn undecided<T: Real, const R: usize, const C: usize>() -> SMatrix<T, R, C> {
+pub(super) fn undecided<T: Real, const R: usize, const C: usize>() -> SMatrix<T, R, C> {
     SMatrix::from_fn(|_, _| T::undecided())
 }
 

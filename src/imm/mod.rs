@@ -12,20 +12,26 @@
 //! combined estimate              moments of the mixture                [crate::gaussian]
 //! ```
 //!
+//! Reading order:
+//!
 //! - [`probability`]: the equations of the mode probabilities;
 //! - [`problem`]: what a run is given, checked;
 //! - [`record`]: every value of one step, under its name;
 //! - [`quantity`]: the names of the values that are traced, and what each is computed from;
 //! - [`equations`]: the table that says which equation gives each value; a variant of the filter exchanges entries of it;
 //! - [`cycle`]: the one wiring that runs a table;
+//! - [`fixed_gain`]: the table of filters whose gains are inputs;
 //! - [`unequal`]: what is mixed where one mode has an entry of the state that another lacks;
 //! - [`diagonal_mixing`]: a labelled stand-in for the OMTM-IMM that zhu2016 compares itself with;
 //! - [`plain_bearing`]: bearings that are never wrapped;
 //! - [`printed`]: what the papers print wrongly.
+//!
+//! Example: a whole step with two modes, value by value, is on the [front page](crate); [`Imm`] has one with one mode.
 
 pub mod cycle;
 pub mod diagonal_mixing;
 pub mod equations;
+pub mod fixed_gain;
 pub mod plain_bearing;
 pub mod printed;
 pub mod probability;

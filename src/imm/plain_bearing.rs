@@ -12,6 +12,34 @@ use nalgebra::{SMatrix, SVector};
 
 impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
     /// The table with plain bearings in all three places, as in the EKF/UKF toolbox (Hartikainen, Solin and Särkkä 2011).
+    ///
+    /// Example: a bearing of 135° is measured where −135° is expected. The innovation is a quarter turn backwards; as a plain number it is
+    /// three quarters forwards, and turns the correction round.
+    ///
+    /// ```
+    /// use immaculate::{gaussian::Gaussian, imm::{Equations, Imm, Initial, Problem}};
+    /// use immaculate::{model::{Measurement, PolarComponent, motion::Mode}, rule::RuleName};
+    /// use nalgebra::{Matrix2, matrix, vector};
+    /// use std::f64::consts::PI;
+    ///
+    /// let problem = Problem {
+    ///     modes: vec![Mode { name: "still".into(), transition: Matrix2::identity(), noise: Matrix2::zeros() }],
+    ///     transition: vec![vec![1.0]],
+    ///     measurement: Measurement::Polar { components: [PolarComponent::Bearing], position: [0, 1], sensor: [0.0, 0.0] },
+    ///     measurement_noise: matrix![0.01],
+    ///     rule: Some("cubature-3".parse::<RuleName>()?.rule()?),
+    ///     fixed_gains: None,
+    /// };
+    /// let start = Gaussian { mean: vector![-1.0, -1.0], covariance: Matrix2::identity() * 1e-6 };
+    /// let initial = Initial { modes: vec![start], mode_probabilities: vec![1.0] };
+    /// let innovation = |equations| -> Result<f64, Box<dyn std::error::Error>> {
+    ///     Ok(Imm::new(problem.clone(), equations, &initial)?.step(Some(&vector![0.75 * PI]))?.innovations[0][0])
+    /// };
+    /// // The points scatter by 1e-3 about (−1, −1), and the mean of their bearings moves by its square at most.
+    /// assert!((innovation(Equations::cubature())? - -0.5 * PI).abs() < 1e-6);
+    /// assert!((innovation(Equations::cubature().with_plain_bearings())? - 1.5 * PI).abs() < 1e-6);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn with_plain_bearings(self) -> Self {
         self.with_plain_mean().with_plain_deviations().with_plain_innovation()

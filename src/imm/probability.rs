@@ -1,6 +1,11 @@
 //! The probabilities of the modes: forward along the Markov chain, backward to where a mode came from, and updated by Bayes' rule.
 //!
 //! After this file the reader knows the only part of the cycle that is not linear algebra, and why it is written in logarithms.
+//!
+//! ```text
+//! pᵢⱼ, μᵢ ─ predicted_mode_probability ─▶ cⱼ ─ mixing_probability ─▶ μᵢ∣ⱼ ─▶ the estimates are mixed, predicted and updated ─▶ ln Lⱼ
+//! ln Lⱼ ─ relative_likelihood ─▶ Λⱼ ─ with cⱼ, evidence ─▶ C ─ mode_probability ─▶ μⱼ of the next step
+//! ```
 
 use crate::number::{Field, Real};
 
@@ -18,13 +23,17 @@ use crate::number::{Field, Real};
 ///
 /// Why: law of total probability.
 ///
-/// # Examples
+/// Example: the target is in mode 0 and stays there with ¾. Read by columns, the same chain gives numbers that are no probabilities.
 ///
 /// ```
 /// use immaculate::imm::probability::predicted_mode_probability;
 ///
 /// let chain = vec![vec![0.75, 0.25], vec![0.5, 0.5]];
-/// assert_eq!(predicted_mode_probability(&chain, &[1.0, 0.0], 1), 0.25);
+/// let c = [0, 1].map(|j| predicted_mode_probability(&chain, &[1.0, 0.0], j));
+/// assert_eq!(c, [0.75, 0.25]); // ¾ · 1 + ½ · 0, ¼ · 1 + ½ · 0
+/// let transposed = vec![vec![0.75, 0.5], vec![0.25, 0.5]];
+/// let wrong = [0, 1].map(|j| predicted_mode_probability(&transposed, &[1.0, 0.0], j));
+/// assert_eq!(wrong, [0.75, 0.5]);
 /// ```
 ///
 /// Evidence: `without_information_probabilities_follow_the_markov_chain` (exact).
@@ -54,17 +63,18 @@ pub fn predicted_mode_probability<T: Field>(transition: &[Vec<T>], mode_probabil
 /// A mode that cannot be reached has cⱼ = 0 and no answer. It keeps its own estimate, μᵢ∣ⱼ = 1 for i = j: its probability is
 /// zero, so no value with a positive probability depends on this choice, and it is ready when the chain reaches it.
 ///
-/// Errata: derbez2000 takes μ₁∣₂ for 1 − a, where p₁₂ = p₂₁ = 1 − a (section 3.1); it is that at even odds only, and tends to one with μ₁.
-///
-/// # Examples
+/// Example: both modes are equally likely before, and mode 0 is the one that keeps its targets.
 ///
 /// ```
 /// use immaculate::imm::probability::mixing_probability;
 ///
 /// let chain = vec![vec![0.75, 0.25], vec![0.5, 0.5]];
-/// // ¾ · ½ / (¾ · ½ + ½ · ½)
-/// assert_eq!(mixing_probability(&chain, &[0.5, 0.5], &0.625, 0, 0), 0.6);
+/// // ¾ · ½ / (¾ · ½ + ½ · ½), ½ · ½ / (¾ · ½ + ½ · ½)
+/// let into_mode_0 = [0, 1].map(|i| mixing_probability(&chain, &[0.5, 0.5], &0.625, i, 0));
+/// assert_eq!(into_mode_0, [0.6, 0.4]);
 /// ```
+///
+/// Errata: derbez2000 takes μ₁∣₂ for 1 − a, where p₁₂ = p₂₁ = 1 − a (section 3.1); it is that at even odds only, and tends to one with μ₁.
 ///
 /// Evidence: `mixing_probabilities_sum_to_one_over_the_previous_modes` (symbolic),
 /// `a_mode_that_cannot_be_reached_keeps_its_own_estimate_and_no_weight`,
@@ -98,14 +108,14 @@ pub fn mixing_probability<T: Field>(
 /// overflows, however small they are, and an outlier costs no digits of the probabilities' sum. A mode that cannot be reached has
 /// no say in m, and a likelihood of zero.
 ///
-/// # Examples
+/// Example: e⁻¹⁰⁰⁰ and e⁻¹⁰⁰¹ are zero as doubles; their ratio is e⁻¹.
 ///
 /// ```
-/// use immaculate::imm::probability::relative_likelihood;
+/// use immaculate::{imm::probability::relative_likelihood, number::Real};
 ///
-/// // e⁻¹⁰⁰⁰ and e⁻¹⁰⁰¹ are zero as doubles; their ratio is e⁻¹.
-/// let second: f64 = relative_likelihood(&[-1000.0, -1001.0], &[0.5, 0.5], 1);
-/// assert_eq!(second, libm::exp(-1.0));
+/// let relative = [0, 1].map(|j| relative_likelihood(&[-1000.0, -1001.0], &[0.5, 0.5], j));
+/// assert_eq!(relative, [1.0, Real::exp(&-1.0)]);
+/// assert_eq!(Real::exp(&-1000.0_f64), 0.0);
 /// ```
 ///
 /// Evidence: `likelihoods_that_underflow_a_double_leave_the_probabilities_right`.
@@ -143,6 +153,13 @@ fn greatest<T: Real>(log_likelihoods: &[T], predicted_mode_probabilities: &[T]) 
 ///
 /// Why: law of total probability; C e^m is the likelihood of the measurement under all modes together.
 ///
+/// Example: likelihoods of 1 and ½ for modes of which the second is twice as probable.
+///
+/// ```
+/// use immaculate::imm::probability::evidence;
+/// assert_eq!(evidence(&[1.0, 0.5], &[0.25, 0.5]), 0.5); // 1 · ¼ + ½ · ½
+/// ```
+///
 /// Errata: zhu2016 (58) sums to "nm" for r (notational). liu2017 (22) prints Lʲ under the sum over i, with which it cancels and the
 /// measurement changes no probability: [`printed::mode_probability_22`](super::printed::mode_probability_22). derbez2000 (not numbered)
 /// sums terms with the index j over i, which is a multiple of one of them.
@@ -160,6 +177,14 @@ pub fn evidence<T: Field>(likelihoods: &[T], predicted_mode_probabilities: &[T])
 /// Logarithm of the measurement's likelihood under all modes together, ln(C e^m) = m + ln C.
 ///
 /// Source: zhu2016 (58), whose denominator it is; what a Bayesian comparison of whole filters sums over the steps.
+///
+/// Example: both modes find the measurement equally unlikely, and so does the filter.
+///
+/// ```
+/// use immaculate::imm::probability::log_evidence;
+/// // −1000 + ln(1 · ½ + 1 · ½)
+/// assert_eq!(log_evidence(&[-1000.0, -1000.0], &[0.5, 0.5], &1.0), -1000.0);
+/// ```
 ///
 /// Evidence: `a_factor_common_to_all_likelihoods_changes_no_probability` (property).
 pub fn log_evidence<T: Real>(log_likelihoods: &[T], predicted_mode_probabilities: &[T], evidence: &T) -> T {
@@ -180,14 +205,14 @@ pub fn log_evidence<T: Real>(log_likelihoods: &[T], predicted_mode_probabilities
 ///
 /// Why: Bayes' rule.
 ///
-/// # Examples
+/// Example: the first mode was half as probable as the second and explains the measurement twice as well.
 ///
 /// ```
 /// use immaculate::imm::probability::{evidence, mode_probability};
 ///
 /// let (likelihoods, predicted) = ([1.0, 0.5], [0.25, 0.5]);
 /// let c = evidence(&likelihoods, &predicted);
-/// assert_eq!(mode_probability(&likelihoods[0], &predicted[0], &c), 0.5);
+/// assert_eq!([0, 1].map(|j| mode_probability(&likelihoods[j], &predicted[j], &c)), [0.5, 0.5]); // 1 · ¼ / ½, ½ · ½ / ½
 /// ```
 ///
 /// Evidence: `likelihoods_that_underflow_a_double_leave_the_probabilities_right`, `permuting_the_modes_permutes_the_answer` (property).

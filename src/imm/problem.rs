@@ -2,6 +2,11 @@
 //!
 //! After this file the reader knows the inputs of the cycle and every way in which they can be wrong. Nothing is repaired: a matrix
 //! that is not quite symmetric or a row that does not quite sum to one is an error that names itself.
+//!
+//! ```text
+//! Problem (the same at every step) ─┬─ check ─▶ Imm::new ─▶ step, step, …        InvalidProblem: the field, and the equation that needs it
+//! Initial (step 0) ─────────────────┘
+//! ```
 
 use crate::filter::fixed_gain::FixedGain;
 use crate::gaussian::Gaussian;
@@ -22,6 +27,16 @@ pub struct Problem<T, const N: usize, const M: usize> {
     pub measurement: Measurement<T, N, M>,
     /// The measurement noise, R — sustika2015 (4), where it is diag(σ_r², σ_θ²): M × M, symmetric positive definite, in products of the
     /// units of the measurement.
+    ///
+    /// Example: a radar of 10 m and ½ rad. Deviations in the place of variances are a famous mistake.
+    ///
+    /// ```
+    /// use immaculate::number::Real;
+    /// use nalgebra::matrix;
+    ///
+    /// let noise = matrix![100.0, 0.0; 0.0, 0.25]; // diag(10², (1/2)²)
+    /// assert_eq!(noise.map(|variance: f64| Real::sqrt(&variance)), matrix![10.0, 0.0; 0.0, 0.5]);
+    /// ```
     pub measurement_noise: SMatrix<T, M, M>,
     /// The rule of a filter with points; none for the Kalman filter.
     pub rule: Option<Rule<T, N>>,
@@ -170,6 +185,29 @@ pub enum InvalidProblem {
 
 impl<T: Real, const N: usize, const M: usize> Problem<T, N, M> {
     /// Checks everything that the cycle relies on.
+    ///
+    /// Example: a row of the transition matrix that does not sum to one is named, with the equation that needs it.
+    ///
+    /// ```
+    /// use immaculate::{gaussian::Gaussian, imm::{Initial, Problem}};
+    /// use immaculate::model::{Measurement, motion::Mode};
+    /// use nalgebra::{matrix, vector};
+    ///
+    /// let problem = Problem {
+    ///     modes: vec![Mode { name: "walk".into(), transition: matrix![1.0], noise: matrix![1.0] }],
+    ///     transition: vec![vec![0.75]],
+    ///     measurement: Measurement::Linear(matrix![1.0]),
+    ///     measurement_noise: matrix![2.0],
+    ///     rule: None,
+    ///     fixed_gains: None,
+    /// };
+    /// let initial = Initial {
+    ///     modes: vec![Gaussian { mean: vector![0.0], covariance: matrix![1.0] }],
+    ///     mode_probabilities: vec![1.0],
+    /// };
+    /// let error = problem.check(&initial).unwrap_err();
+    /// assert_eq!(error.to_string(), "`transition[0]` sums to 0.75; it must sum to 1 (zhu2016 (54))");
+    /// ```
     ///
     /// # Errors
     ///

@@ -126,6 +126,15 @@ impl Quantity {
     }
 
     /// The printed equations that give it.
+    ///
+    /// Example: from the name in a trace to the printed number.
+    ///
+    /// ```
+    /// use immaculate::imm::Quantity;
+    ///
+    /// assert_eq!(Quantity::MixedCovariance.name(), "mixed.covariance");
+    /// assert_eq!(Quantity::MixedCovariance.equation(), "zhu2016 (56), liu2017 (12)");
+    /// ```
     pub fn equation(self) -> &'static str {
         match self {
             PredictedModeProbabilities | MixingProbabilities => "zhu2016 (54), liu2017 (13)",

@@ -3,6 +3,8 @@
 //! After this file the reader knows what a step computes and in which order. Each field holds one value a mode (or one in all); each
 //! is given by the entry of the same name in [`Equations`](super::Equations). The record is always filled in: that is what makes
 //! the filter inspectable, and costs next to nothing.
+//!
+//! The fields are in the order in which they are computed. [`Quantity`](super::Quantity) names those that a trace shows.
 
 use crate::gaussian::Gaussian;
 use crate::number::Field;

@@ -34,6 +34,22 @@ use nalgebra::{SMatrix, SVector};
 ///
 /// Source: the EKF/UKF toolbox of Hartikainen, Solin and Särkkä, `imm_predict`: lists of indices for each model, and sums over these.
 ///
+/// Example: a mode that knows of no acceleration and one that has 4 ± 1, half and half. The law of total covariance counts the first as a
+/// zero.
+///
+/// ```
+/// use immaculate::{gaussian::{Gaussian, mixture_covariance}, imm::unequal::index_wise_covariance, model::motion::Mode};
+/// use nalgebra::{matrix, vector};
+///
+/// let mode = |f| Mode { name: "acceleration".into(), transition: matrix![f], noise: matrix![0.0] };
+/// let modes = [mode(0.0), mode(1.0)];
+/// let none = Gaussian { mean: vector![0.0], covariance: matrix![0.0] };
+/// let some = Gaussian { mean: vector![4.0], covariance: matrix![1.0] };
+/// let (weights, both, mean) = ([0.5, 0.5], [none, some], vector![2.0]);
+/// assert_eq!(index_wise_covariance(&weights, &both, &mean, &modes), matrix![2.5]); // ½ · (1 + 2²)
+/// assert_eq!(mixture_covariance(&weights, &both, &mean), matrix![4.5]); // ½ · (0 + 2²) + ½ · (1 + 2²)
+/// ```
+///
 /// Evidence: `index_wise_mixing_leaves_out_the_spread_of_a_missing_entry` (exact).
 pub fn index_wise_covariance<T: Field, const N: usize>(
     weights: &[T],
@@ -77,6 +93,19 @@ fn without_missing_entries<T: Field, const N: usize>(matrix: SMatrix<T, N, N>, m
 /// their covariance come from the model that has them, uncorrelated with the rest.
 ///
 /// Why: if the target accelerates, zero is a biased guess of its acceleration; the guess of the mode that models it is not.
+///
+/// Example: position and acceleration; the first mode has no acceleration and takes it from the second.
+///
+/// ```
+/// use immaculate::{gaussian::Gaussian, imm::unequal::augmented, model::motion::Mode};
+/// use nalgebra::{matrix, vector};
+///
+/// let mode = Mode { name: "still".into(), transition: matrix![1.0, 0.0; 0.0, 0.0], noise: matrix![1.0, 0.0; 0.0, 0.0] };
+/// let own = Gaussian { mean: vector![1.0, 0.0], covariance: matrix![2.0, 0.0; 0.0, 0.0] };
+/// let of = Gaussian { mean: vector![3.0, 4.0], covariance: matrix![5.0, 6.0; 6.0, 9.0] };
+/// let both = augmented(&own, &of, &mode);
+/// assert_eq!((both.mean, both.covariance), (vector![1.0, 4.0], matrix![2.0, 0.0; 0.0, 9.0]));
+/// ```
 ///
 /// Evidence: `unbiased_mixing_keeps_the_entry_that_one_mode_alone_has` (exact).
 pub fn augmented<T: Field, const N: usize>(

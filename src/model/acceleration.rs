@@ -31,6 +31,16 @@ use nalgebra::{Matrix3, RowVector3, Vector3};
 ///
 /// Source: derbez2000, section 2.2.
 ///
+/// Example: two seconds at 3 m/s; an acceleration that mixing left in the state is dropped.
+///
+/// ```
+/// use immaculate::model::acceleration::embedded_constant_velocity;
+/// use nalgebra::vector;
+///
+/// // 10 + 2 · 3
+/// assert_eq!(embedded_constant_velocity(&2.0) * vector![10.0, 3.0, 4.0], vector![16.0, 3.0, 0.0]);
+/// ```
+///
 /// Evidence: `the_two_motions_differ_by_the_acceleration` (symbolic).
 #[rustfmt::skip]
 pub fn embedded_constant_velocity<T: Field>(interval: &T) -> Matrix3<T> {
@@ -58,6 +68,16 @@ pub fn embedded_constant_velocity<T: Field>(interval: &T) -> Matrix3<T> {
 ///
 /// Source: derbez2000, section 2.2.
 ///
+/// Example: what 4 m/s² add in two seconds.
+///
+/// ```
+/// use immaculate::model::acceleration::acceleration_part;
+/// use nalgebra::vector;
+///
+/// // 4 · 2²/2, 4 · 2, 4
+/// assert_eq!(acceleration_part(&2.0) * vector![10.0, 3.0, 4.0], vector![8.0, 8.0, 4.0]);
+/// ```
+///
 /// Evidence: `the_two_motions_differ_by_the_acceleration` (symbolic).
 #[rustfmt::skip]
 pub fn acceleration_part<T: Field>(interval: &T) -> Matrix3<T> {
@@ -84,6 +104,17 @@ pub fn acceleration_part<T: Field>(interval: &T) -> Matrix3<T> {
 ///
 /// Source: derbez2000, section 2.2.
 ///
+/// Example: the sum of the two, and two steps of one second are one of two.
+///
+/// ```
+/// use immaculate::model::acceleration::constant_acceleration;
+/// use nalgebra::vector;
+///
+/// // 10 + 2 · 3 + 8, 3 + 8, 4
+/// assert_eq!(constant_acceleration(&2.0) * vector![10.0, 3.0, 4.0], vector![24.0, 11.0, 4.0]);
+/// assert_eq!(constant_acceleration(&1.0) * constant_acceleration(&1.0), constant_acceleration(&2.0));
+/// ```
+///
 /// Evidence: `the_two_motions_differ_by_the_acceleration`, `constant_acceleration_composes_over_time` (symbolic).
 pub fn constant_acceleration<T: Field>(interval: &T) -> Matrix3<T> {
     embedded_constant_velocity(interval) + acceleration_part(interval)
@@ -95,6 +126,16 @@ pub fn constant_acceleration<T: Field>(interval: &T) -> Matrix3<T> {
 ///
 /// Source: derbez2000, sections 2.2 and 3, not numbered.
 ///
+/// Example: what the constant velocity model does not know of a target with 4 m/s².
+///
+/// ```
+/// use immaculate::model::acceleration::{acceleration_part, acceleration_response};
+/// use nalgebra::vector;
+///
+/// assert_eq!(acceleration_response(&2.0), vector![2.0, 2.0, 1.0]); // 2²/2, 2, 1
+/// assert_eq!(acceleration_response(&2.0) * 4.0, acceleration_part(&2.0) * vector![10.0, 3.0, 4.0]);
+/// ```
+///
 /// Errata: section 3 calls the noise inputs of "the CA/CV plant" G_v and G_a "respectively"; it is the other order.
 pub fn acceleration_response<T: Field>(interval: &T) -> Vector3<T> {
     let t = || interval.clone();
@@ -104,6 +145,15 @@ pub fn acceleration_response<T: Field>(interval: &T) -> Vector3<T> {
 /// How an acceleration that is constant over a step enters the state of constant velocity: G_v = [t²/2, t, 0]ᵀ.
 ///
 /// Source: derbez2000, section 3, not numbered; printed for a state of two, and embedded here as F is in (5).
+///
+/// Example: as the response with acceleration, but for the entry that the model lacks.
+///
+/// ```
+/// use immaculate::model::acceleration::embedded_velocity_response;
+/// use nalgebra::vector;
+///
+/// assert_eq!(embedded_velocity_response(&2.0), vector![2.0, 2.0, 0.0]); // 2²/2, 2
+/// ```
 pub fn embedded_velocity_response<T: Field>(interval: &T) -> Vector3<T> {
     let t = || interval.clone();
     Vector3::new(t() * t() / T::integer(2), t(), T::zero())
@@ -117,6 +167,18 @@ pub fn embedded_velocity_response<T: Field>(interval: &T) -> Vector3<T> {
 /// | Q_v, Q_a | `variance` | (m/s²)² | variance of the acceleration, or of its change, over one step         |
 ///
 /// Source: derbez2000, section 3, not numbered: "the noise matrix for the CV process noise is then G_v Q_v G_vᵀ".
+///
+/// Example: an acceleration of variance 3 over two seconds. Every entry is a product of two responses, so that no pair of columns is
+/// independent.
+///
+/// ```
+/// use immaculate::model::acceleration::{acceleration_response, response_noise};
+/// use nalgebra::matrix;
+///
+/// // (2, 2, 1)ᵀ · 3 · (2, 2, 1)
+/// let noise = response_noise(&acceleration_response(&2.0), &3.0);
+/// assert_eq!(noise, matrix![12.0, 12.0, 6.0; 12.0, 12.0, 6.0; 6.0, 6.0, 3.0]);
+/// ```
 pub fn response_noise<T: Field>(response: &Vector3<T>, variance: &T) -> Matrix3<T> {
     (response * response.transpose()) * variance.clone()
 }
@@ -124,6 +186,15 @@ pub fn response_noise<T: Field>(response: &Vector3<T>, variance: &T) -> Matrix3<
 /// The matrix of a measured position, H = [1 0 0].
 ///
 /// Source: derbez2000, section 2.2, not numbered.
+///
+/// Example: of position, velocity and acceleration the first is seen.
+///
+/// ```
+/// use immaculate::model::acceleration::position_matrix;
+/// use nalgebra::vector;
+///
+/// assert_eq!(position_matrix() * vector![10.0, 3.0, 4.0], vector![10.0]);
+/// ```
 pub fn position_matrix<T: Field>() -> RowVector3<T> {
     RowVector3::new(T::one(), T::zero(), T::zero())
 }

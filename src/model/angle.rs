@@ -17,15 +17,15 @@ use crate::number::Real;
 /// whose order against ±π cannot be decided is undecided, and so is one of more than a thousand turns, which no difference of
 /// bearings is.
 ///
-/// # Examples
+/// Example: seven eighths of a turn to the left are one eighth to the right. Half a turn is +π, never −π.
 ///
 /// ```
 /// use immaculate::model::angle::wrap;
+/// use std::f64::consts::PI;
 ///
-/// let two_pi = 2.0 * std::f64::consts::PI;
 /// assert_eq!(wrap(0.5), 0.5);
-/// assert_eq!(wrap(0.5 - two_pi), 0.5 - two_pi + two_pi);
-/// assert_eq!(wrap(-std::f64::consts::PI), std::f64::consts::PI);
+/// assert_eq!(wrap(1.75 * PI), -0.25 * PI);
+/// assert_eq!(wrap(-PI), PI);
 /// ```
 ///
 /// Evidence: `a_wrapped_angle_is_in_the_half_open_turn_and_differs_by_whole_turns` (property).

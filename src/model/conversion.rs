@@ -63,6 +63,15 @@ impl Conversion {
     /// The name in files and on the command line.
     ///
     /// Source: the literature's names.
+    ///
+    /// Example: what a problem file calls them.
+    ///
+    /// ```
+    /// use immaculate::model::Conversion;
+    ///
+    /// assert_eq!(Conversion::ALL.map(Conversion::name), ["standard", "additive", "multiplicative", "modified-unbiased"]);
+    /// assert_eq!("additive".parse(), Ok(Conversion::Additive));
+    /// ```
     pub fn name(self) -> &'static str {
         match self {
             Self::Standard => "standard",
@@ -78,12 +87,10 @@ impl Conversion {
     ///
     /// Range and bearing as measured, m and rad, counter-clockwise from x; the standard one ignores the bearing's variance, rad².
     ///
-    /// # Examples
-    ///
-    /// 1000 m at 90°, with σ_θ = 0.1 rad: w = e^(−0.005), 5 m are taken away by the noise.
+    /// Example: 1000 m at 90°, with σ_θ = 0.1 rad: w = e^(−0.005), so that the noise takes 5 m away.
     ///
     /// ```
-    /// use immaculate::model::conversion::Conversion;
+    /// use immaculate::model::Conversion;
     ///
     /// let y = |conversion: Conversion| conversion.position(&1000.0, &std::f64::consts::FRAC_PI_2, &0.01)[1];
     /// assert_eq!(Conversion::ALL.map(y).map(f64::round), [1000.0, 1005.0, 1005.0, 995.0]);
@@ -104,13 +111,11 @@ impl Conversion {
     ///
     /// Range and bearing as measured, m and rad, counter-clockwise from x; the variances of the sensor, m² and rad².
     ///
-    /// # Examples
-    ///
-    /// 1000 m at 90°, with σ_r = 10 m and σ_θ = 0.1 rad, is 100 m uncertain across and 10 m along, by the standard conversion; the others
-    /// know that the arc bends:
+    /// Example: 1000 m at 90°, with σ_r = 10 m and σ_θ = 0.1 rad, is 100 m uncertain across and 10 m along, by the standard conversion; the
+    /// others know that the arc bends.
     ///
     /// ```
-    /// use immaculate::model::conversion::Conversion;
+    /// use immaculate::model::Conversion;
     ///
     /// let y = |conversion: Conversion| {
     ///     let r = conversion.covariance(&1000.0, &std::f64::consts::FRAC_PI_2, &100.0, &0.01);
@@ -131,16 +136,15 @@ impl Conversion {
     ///
     /// Source: the equation of that conversion in this file.
     ///
-    /// Evidence: `the_covariances_agree_to_first_order_and_the_factors_do_not` (symbolic).
-    ///
-    /// # Examples
-    ///
-    /// At w = 1/2, which is a bearing of no use, σ_θ = 67°:
+    /// Example: at w = 1/2, which is a bearing of no use, σ_θ = 67°.
     ///
     /// ```
-    /// use immaculate::model::conversion::Conversion;
+    /// use immaculate::model::Conversion;
+    /// // 1, 1 − (¼ − ½), 1/½, ½
     /// assert_eq!(Conversion::ALL.map(|conversion| conversion.factor(&0.5)), [1.0, 1.25, 2.0, 0.5]);
     /// ```
+    ///
+    /// Evidence: `the_covariances_agree_to_first_order_and_the_factors_do_not` (symbolic).
     pub fn factor<T: Field>(self, attenuation: &T) -> T {
         match self {
             Self::Standard => T::one(),
@@ -154,22 +158,19 @@ impl Conversion {
     ///
     /// Source: the equation of that conversion in this file.
     ///
-    /// Evidence: `the_covariances_agree_to_first_order_and_the_factors_do_not` (symbolic),
-    /// `doubles_lose_the_squared_range_times_their_last_place` (enclosed).
-    ///
-    /// # Examples
-    ///
-    /// At 10 m with σ_r = 2 m, σ_θ² = 0.02:
+    /// Example: at 10 m with σ_r = 2 m, σ_θ² = 0.02, to the nearest square decimetre.
     ///
     /// ```
-    /// use immaculate::model::conversion::Conversion;
-    /// use immaculate::model::conversion_moments::attenuation;
+    /// use immaculate::model::{Conversion, conversion_moments::attenuation};
     ///
     /// let variances = |conversion: Conversion| {
     ///     conversion.variances(&100.0, &4.0, &0.02, &attenuation(&0.02)).map(|m2| (100.0 * m2).round() / 100.0)
     /// };
     /// assert_eq!(Conversion::ALL.map(variances), [[4.0, 2.0], [3.91, 2.15], [3.98, 2.04], [3.94, 2.04]]);
     /// ```
+    ///
+    /// Evidence: `the_covariances_agree_to_first_order_and_the_factors_do_not` (symbolic),
+    /// `doubles_lose_the_squared_range_times_their_last_place` (enclosed).
     pub fn variances<T: Field>(
         self,
         squared_range: &T,
@@ -217,7 +218,7 @@ impl FromStr for Conversion {
 /// Why: the definition of polar coordinates. Given the truth its mean is w r (cos θ, sin θ) with w = e^(−σ_θ²/2) < 1: the measured
 /// positions lie on an arc, and their mean inside of it. The bias is r σ_θ²/2 towards the sensor, to first order.
 ///
-/// # Examples
+/// Example: 5 m in the direction (3/5, 4/5).
 ///
 /// ```
 /// use immaculate::model::conversion::converted_position;
@@ -250,15 +251,16 @@ pub fn converted_position<T: Field>(range: &T, cosine: &T, sine: &T) -> Vector2<
 /// sight ([`standard_variances`]), turned ([`in_the_plane`]). What is left out is of second order in the variances; the rule of thumb is
 /// that it is small while r σ_θ²/σ_r < 0.4 and σ_θ < 0.4 rad.
 ///
-/// # Examples
+/// Example: 10 m away in the direction (3/5, 4/5), 1 m² along and 2 m² across the line of sight.
 ///
 /// ```
-/// use immaculate::model::conversion::converted_covariance;
+/// use immaculate::{model::conversion::converted_covariance, number::Rational};
 /// use nalgebra::matrix;
 ///
-/// // 10 m away in the direction (0.6, 0.8); σ_r² = 1 m², and r² σ_θ² = 100 · 0.02 = 2 m².
-/// let r = converted_covariance(&10.0, &0.6, &0.8, &1.0, &0.02);
-/// assert!((r - matrix![1.64, -0.48; -0.48, 1.36]).norm() < 1e-12);
+/// let q = Rational::new;
+/// let r = converted_covariance(&q(10, 1), &q(3, 5), &q(4, 5), &q(1, 1), &q(2, 100));
+/// // 2 · 16/25 + 1 · 9/25, (1 − 2) · 12/25, 2 · 9/25 + 1 · 16/25
+/// assert_eq!(r, matrix![q(41, 25), q(-12, 25); q(-12, 25), q(34, 25)]);
 /// ```
 ///
 /// Evidence: `the_standard_covariance_is_the_first_order_propagation` (symbolic), `the_slopes_of_a_position_give_its_covariance`
@@ -284,13 +286,12 @@ pub fn converted_covariance<T: Field>(
 ///
 /// Source: u = (cos θ, sin θ) and n = (−sin θ, cos θ), multiplied out.
 ///
-/// # Examples
+/// Example: straight ahead and to the left the axes are those of the plane.
 ///
 /// ```
 /// use immaculate::model::conversion::in_the_plane;
 /// use nalgebra::matrix;
 ///
-/// // Straight ahead and to the left the axes are those of the plane.
 /// assert_eq!(in_the_plane(&[4.0, 9.0], &1.0, &0.0), matrix![4.0, 0.0; 0.0, 9.0]);
 /// assert_eq!(in_the_plane(&[4.0, 9.0], &0.0, &1.0), matrix![9.0, 0.0; 0.0, 4.0]);
 /// ```
@@ -314,9 +315,7 @@ pub fn in_the_plane<T: Field>([along, across]: &[T; 2], cosine: &T, sine: &T) ->
 ///
 /// Singular where r = 0, though the position of a target that is measured at the sensor is as uncertain in every direction.
 ///
-/// # Examples
-///
-/// sustika2015's radar at 1.4 km, with σ_r = 10 m and σ_θ = 1°: 24 m across.
+/// Example: sustika2015's radar at 1.4 km, with σ_r = 10 m and σ_θ = 1°: 24 m across.
 ///
 /// ```
 /// use immaculate::model::conversion::standard_variances;
@@ -343,7 +342,7 @@ pub fn standard_variances<T: Field>(squared_range: &T, range_variance: &T, beari
 ///
 /// Source: Lerro and Bar-Shalom, IEEE Transactions on Aerospace and Electronic Systems 29(3), 1993, pages 1015-1022.
 ///
-/// # Examples
+/// Example: at w = 1/2 the mean of the bias is ¼ − ½ of the position.
 ///
 /// ```
 /// use immaculate::model::conversion::additive_factor;
@@ -369,13 +368,14 @@ pub fn additive_factor<T: Field>(attenuation: &T) -> T {
 ///
 /// Source: Lerro and Bar-Shalom 1993, as [`additive_factor`].
 ///
-/// # Examples
+/// Example: at r = 0, σ_r² = 1, w² = 1/2 nothing but the range's noise is left, the same in all directions.
 ///
 /// ```
-/// use immaculate::model::conversion::additive_variances;
-/// // At r = 0, σ_r² = 1, w² = 1/2: 17/16 − 5/16 and 15/16 − 3/16.
-/// let [along, across] = additive_variances(&0.0, &1.0, &0.5_f64.sqrt());
-/// assert!((along - 0.75).abs() < 1e-15 && (across - 0.75).abs() < 1e-15);
+/// use immaculate::{model::conversion::additive_variances, number::{Field, Rational, Surd}};
+///
+/// let w = Surd::root(&Rational::new(1, 2));
+/// // ½ · 17/16 · 2 − ½ · ½ · 5/4, and ½ · 15/16 · 2 − ½ · ½ · 3/4
+/// assert_eq!(additive_variances(&Surd::integer(0), &Surd::integer(1), &w), [Surd::ratio(3, 4), Surd::ratio(3, 4)]);
 /// ```
 ///
 /// Evidence: `the_additive_conversion_subtracts_the_mean_of_the_bias_and_has_the_mean_of_the_covariance`,
@@ -406,7 +406,7 @@ pub fn additive_variances<T: Field>(squared_range: &T, range_variance: &T, atten
 /// Source: Longbin, Xiaoquan, Yiyu, Kang and Bar-Shalom, IEEE Transactions on Aerospace and Electronic Systems 34(3), 1998, pages
 /// 1023-1027.
 ///
-/// # Examples
+/// Example: what was halved is doubled.
 ///
 /// ```
 /// use immaculate::model::conversion::multiplicative_factor;
@@ -430,13 +430,14 @@ pub fn multiplicative_factor<T: Field>(attenuation: &T) -> T {
 ///
 /// Source: Longbin et al. 1998, as [`multiplicative_factor`].
 ///
-/// # Examples
+/// Example: at r² = 16, σ_r² = 16, w² = 1/2.
 ///
 /// ```
-/// use immaculate::model::conversion::multiplicative_variances;
-/// // At r² = 16, σ_r² = 16, w² = 1/2: ½ · 5/4 · 32, and ½ · 3/4 · 32.
-/// let [along, across] = multiplicative_variances(&16.0, &16.0, &0.5_f64.sqrt());
-/// assert!((along - 20.0).abs() < 1e-13 && (across - 12.0).abs() < 1e-13);
+/// use immaculate::{model::conversion::multiplicative_variances, number::{Field, Rational, Surd}};
+///
+/// let (w, sixteen) = (Surd::root(&Rational::new(1, 2)), Surd::integer(16));
+/// // (2 − 2) · 16 + ½ · 5/4 · 32, and ½ · 3/4 · 32
+/// assert_eq!(multiplicative_variances(&sixteen, &sixteen, &w), [Surd::integer(20), Surd::integer(12)]);
 /// ```
 ///
 /// Evidence: `the_multiplicative_conversion_is_unbiased_given_the_truth_and_has_its_error_given_the_measurement` (symbolic).
@@ -458,7 +459,7 @@ pub fn multiplicative_variances<T: Field>(squared_range: &T, range_variance: &T,
 /// Source: Duan, Han and Li, "Comments on unbiased converted measurements for tracking", IEEE Transactions on Aerospace and Electronic
 /// Systems 40(4), 2004, pages 1374-1377.
 ///
-/// # Examples
+/// Example: a target measured at 1000 m is expected at 500 m if its bearing is of no use.
 ///
 /// ```
 /// use immaculate::model::conversion::modified_unbiased_factor;
@@ -481,13 +482,14 @@ pub fn modified_unbiased_factor<T: Field>(attenuation: &T) -> T {
 ///
 /// Source: Duan, Han and Li 2004, as [`modified_unbiased_factor`].
 ///
-/// # Examples
+/// Example: at r² = 16, σ_r² = 16, w² = 1/2.
 ///
 /// ```
-/// use immaculate::model::conversion::modified_unbiased_variances;
-/// // At r² = 16, σ_r² = 16, w² = 1/2: ½ · 5/4 · 32 − 8, and ½ · 3/4 · 32.
-/// let [along, across] = modified_unbiased_variances(&16.0, &16.0, &0.5_f64.sqrt());
-/// assert!((along - 12.0).abs() < 1e-13 && (across - 12.0).abs() < 1e-13);
+/// use immaculate::{model::conversion::modified_unbiased_variances, number::{Field, Rational, Surd}};
+///
+/// let (w, sixteen) = (Surd::root(&Rational::new(1, 2)), Surd::integer(16));
+/// // ½ · 5/4 · 32 − ½ · 16, and ½ · 3/4 · 32
+/// assert_eq!(modified_unbiased_variances(&sixteen, &sixteen, &w), [Surd::integer(12), Surd::integer(12)]);
 /// ```
 ///
 /// Evidence: `the_modified_unbiased_conversion_is_mean_and_covariance_given_the_measurement` (symbolic).

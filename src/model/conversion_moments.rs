@@ -29,16 +29,14 @@ use crate::number::{Field, Real};
 ///
 /// Source: the characteristic function of a Gaussian.
 ///
-/// # Examples
-///
-/// One degree takes 0.15 ‰ of the range away, 20° take 6 %:
+/// Example: a noise of one degree takes 0.15 ‰ of the range away, one of 20° takes 6 %.
 ///
 /// ```
 /// use immaculate::model::conversion_moments::attenuation;
 ///
 /// let of_degrees = |degrees: f64| attenuation(&(degrees.to_radians() * degrees.to_radians()));
-/// assert!((of_degrees(1.0) - 0.999_847_7).abs() < 1e-7);
-/// assert!((of_degrees(20.0) - 0.940_9).abs() < 1e-4);
+/// assert_eq!((1e5 * of_degrees(1.0)).round(), 99_985.0);
+/// assert_eq!((1e2 * of_degrees(20.0)).round(), 94.0);
 /// ```
 ///
 /// Evidence: `the_mean_cosine_of_a_gaussian_angle_is_the_exponential` (enclosed).
@@ -60,16 +58,15 @@ pub fn attenuation<T: Real>(bearing_variance: &T) -> T {
 ///
 /// Source: the head of this file, and E[(r + r̃)²] = r² + σ_r².
 ///
-/// # Examples
-///
-/// At 10 m, with σ_r² = 4 m² and w⁴ = 1/2, the mean square of 104 m² is shared three to one:
+/// Example: at 10 m, with σ_r² = 4 m² and w² = 1/2, the mean square of 104 m² is shared five to three.
 ///
 /// ```
 /// use immaculate::model::conversion_moments::second_moments;
+/// use immaculate::number::{Field, Rational, Surd};
 ///
-/// let w = 0.5_f64.sqrt().sqrt();
-/// let [along, across] = second_moments(&100.0, &4.0, &w);
-/// assert!((along - 78.0).abs() < 1e-12 && (across - 26.0).abs() < 1e-12);
+/// let w = Surd::root(&Rational::new(1, 2));
+/// // ½ · (1 + ¼) · 104, ½ · (1 − ¼) · 104
+/// assert_eq!(second_moments(&Surd::integer(100), &Surd::integer(4), &w), [65, 39].map(Surd::integer));
 /// ```
 ///
 /// Evidence: `the_moments_are_those_of_range_and_bearing` (symbolic).
@@ -88,9 +85,7 @@ pub fn second_moments<T: Field>(squared_range: &T, range_variance: &T, attenuati
 ///
 /// Source: the head of this file; n nᵀ is I − u uᵀ.
 ///
-/// # Examples
-///
-/// Without noise nothing is mixed; where all bearings are equally likely, w = 0, both get the mean:
+/// Example: without noise nothing is mixed; where all bearings are equally likely, w = 0, both get the mean.
 ///
 /// ```
 /// use immaculate::model::conversion_moments::over_bearings;
@@ -128,16 +123,17 @@ pub fn over_bearings<T: Field>([along, across]: &[T; 2], attenuation: &T) -> [T;
 ///
 /// Source: the square multiplied out, with `E[z] = f w r u` and `x = r u`.
 ///
-/// # Examples
-///
-/// As there, with the factor 1: of the 78 m² along the line of sight 2 w r² − r² = 68.2 m² are no error.
+/// Example: as there, with the factor 1. Of the 65 m² along the line of sight (2w − 1) r² = 41.4 m² are no error.
 ///
 /// ```
 /// use immaculate::model::conversion_moments::mean_squared_errors;
+/// use immaculate::number::{Field, Rational, Surd};
 ///
-/// let w = 0.5_f64.sqrt().sqrt();
-/// let [along, across] = mean_squared_errors(&1.0, &100.0, &4.0, &w);
-/// assert!((along - 9.8).abs() < 0.05 && (across - 26.0).abs() < 1e-12);
+/// let w = Surd::root(&Rational::new(1, 2));
+/// let [one, range, noise] = [1, 100, 4].map(Surd::integer);
+/// // 65 − (√2 − 1) · 100, and 39
+/// let along = Surd::integer(165) - Surd::integer(100) * Surd::root(&Rational::new(2, 1));
+/// assert_eq!(mean_squared_errors(&one, &range, &noise, &w), [along, Surd::integer(39)]);
 /// ```
 ///
 /// Evidence: `the_moments_are_those_of_range_and_bearing` (symbolic).
@@ -162,16 +158,17 @@ pub fn mean_squared_errors<T: Field>(factor: &T, squared_range: &T, range_varian
 ///
 /// Source: the squares multiplied out.
 ///
-/// # Examples
-///
-/// 9.8 m² as before, plus what the turn of the axes changes: 104 − 168.2 + 75 = 10.8 m², and 25 m² across.
+/// Example: as before, in the axes of the measurement: 25.1 m² along for 23.6, and 37.5 across for 39.
 ///
 /// ```
 /// use immaculate::model::conversion_moments::errors_as_measured;
+/// use immaculate::number::{Field, Rational, Surd};
 ///
-/// let w = 0.5_f64.sqrt().sqrt();
-/// let [along, across] = errors_as_measured(&1.0, &100.0, &4.0, &w);
-/// assert!((along - 10.8).abs() < 0.05 && (across - 25.0).abs() < 1e-12);
+/// let w = Surd::root(&Rational::new(1, 2));
+/// let [one, range, noise] = [1, 100, 4].map(Surd::integer);
+/// // 104 − √2 · 100 + ½ · (1 + ¼) · 100, and ½ · (1 − ¼) · 100
+/// let along = Surd::ratio(333, 2) - Surd::integer(100) * Surd::root(&Rational::new(2, 1));
+/// assert_eq!(errors_as_measured(&one, &range, &noise, &w), [along, Surd::ratio(75, 2)]);
 /// ```
 ///
 /// Evidence: `the_moments_are_those_of_range_and_bearing` (symbolic).

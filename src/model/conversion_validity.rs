@@ -45,16 +45,17 @@ pub struct Validity<T> {
 ///
 /// Source: Bar-Shalom, Li and Kirubarajan 2001, section 10.4.3, where it is to be below 0.4.
 ///
-/// # Examples
-///
-/// sustika2015's radar at 1.4 km, with σ_r = 10 m and σ_θ = 1° and 4°: inside the rule, and beyond.
+/// Example: a radar with σ_r = 10 m at 1 km, with σ_θ = 1/50 rad, which is about one degree, and four times that: inside the rule, and
+/// beyond.
 ///
 /// ```
-/// use immaculate::model::conversion_validity::nonlinearity;
+/// use immaculate::{model::conversion_validity::nonlinearity, number::Rational};
 ///
-/// let of_degrees = |degrees: f64| nonlinearity(&1400.0, &10.0, &(degrees.to_radians() * degrees.to_radians()));
-/// assert!((of_degrees(1.0) - 0.043).abs() < 1e-3);
-/// assert!((of_degrees(4.0) - 0.68).abs() < 1e-2);
+/// let q = Rational::new;
+/// let at_deviation = |deviation: Rational| nonlinearity(&q(1000, 1), &q(10, 1), &(deviation.clone() * deviation));
+/// // 1000 · (1/50)² / 10, and sixteen times as much
+/// assert_eq!(at_deviation(q(1, 50)), q(4, 100));
+/// assert_eq!(at_deviation(q(4, 50)), q(64, 100));
 /// ```
 ///
 /// Evidence: `a_conversion_is_as_valid_as_its_nonlinearity_says` (symbolic).
@@ -72,9 +73,7 @@ pub fn nonlinearity<T: Field>(range: &T, range_deviation: &T, bearing_variance: 
 ///
 /// Source: the moments of [`conversion_moments`](super::conversion_moments); R is linear in r̂², and E r̂² = r² + σ_r².
 ///
-/// # Examples
-///
-/// The rule of thumb at its limit, ρ = 0.4, for the standard conversion at one degree:
+/// Example: the rule of thumb at its limit, ρ = 0.4, for the standard conversion at one degree.
 ///
 /// ```
 /// use immaculate::model::Conversion;
@@ -83,6 +82,7 @@ pub fn nonlinearity<T: Field>(range: &T, range_deviation: &T, bearing_variance: 
 ///
 /// let variance = 1.0_f64.to_radians() * 1.0_f64.to_radians();
 /// let at_limit = validity(Conversion::Standard, &0.4, &variance, &attenuation(&variance));
+/// // −ρ/2, 1 + ¾ρ² and (1 + ¾ρ²)/(1 + ρ²) hold as σ_θ tends to zero; at one degree σ_θ² = 0.0003 is left of them.
 /// assert!((at_limit.bias - -0.2).abs() < 1e-3);
 /// assert!((at_limit.as_measured[0] - 1.12).abs() < 1e-3);
 /// assert!((at_limit.as_true[0] - 1.12 / 1.16).abs() < 1e-3);

@@ -2,6 +2,13 @@
 //!
 //! After this file the reader knows the papers' measurements, how residuals are formed and how measurements of cubature points
 //! are averaged when some of their components are angles ([`super::angle`]).
+//!
+//! ```text
+//! state or point ─ of ─▶ Z          weights, Z, centre ─ mean ─▶ ẑ          z, ẑ ─ difference ─▶ ν = z − ẑ, angles wrapped
+//! ```
+//!
+//! A converted measurement ([`Measurement::Converted`]) is linear once it has become a position; how it does is in
+//! [`crate::filter::converted`].
 
 use super::angle::wrap;
 use super::conversion::Conversion;
@@ -22,12 +29,32 @@ pub enum PolarComponent {
 pub enum Measurement<T, const N: usize, const M: usize> {
     /// A linear measurement — zhu2016 (62): h(x) = H x.
     ///
+    /// Example: of [x, ẋ, y, ẏ] the position is seen.
+    ///
+    /// ```
+    /// use immaculate::model::Measurement;
+    /// use nalgebra::{matrix, vector};
+    ///
+    /// let position = Measurement::Linear(matrix![1.0, 0.0, 0.0, 0.0; 0.0, 0.0, 1.0, 0.0]);
+    /// assert_eq!(position.of(&vector![3.0, 7.0, 4.0, 8.0]), vector![3.0, 4.0]);
+    /// ```
+    ///
     /// Errata: the paper prints Z = H + R, with the matrix added to the noise; H multiplies the state, and R names both the noise
     /// and its covariance.
     ///
     /// Evidence: `printed_measurement_adds_noise_to_the_matrix`.
     Linear(SMatrix<T, M, N>),
     /// A measurement in polar coordinates — sustika2015 (3), liu2017 (31): r = √(x² + y²), θ = tan⁻¹(y/x).
+    ///
+    /// Example: a target 3 m east and 4 m north of the sensor is 5 m away.
+    ///
+    /// ```
+    /// use immaculate::model::{Measurement, PolarComponent};
+    /// use nalgebra::vector;
+    ///
+    /// let range = Measurement::Polar { components: [PolarComponent::Range], position: [0, 2], sensor: [100.0, 0.0] };
+    /// assert_eq!(range.of(&vector![103.0, 7.0, 4.0, 8.0]), vector![5.0]); // √(3² + 4²)
+    /// ```
     ///
     /// Errata: tan⁻¹(y/x) confuses opposite directions; it is atan2(y, x) here.
     Polar {
@@ -54,6 +81,22 @@ pub enum Measurement<T, const N: usize, const M: usize> {
 
 impl<T: Real, const N: usize, const M: usize> Measurement<T, N, M> {
     /// The measurement of a state without noise, h(x) — sustika2015 (2), (3), (30), zhu2016 (35)-(41), (62), liu2017 (1), (31).
+    ///
+    /// Example: a target to the south-west, whose bearing is −135°. The printed tan⁻¹(y/x) says 45°, the opposite direction.
+    ///
+    /// ```
+    /// use immaculate::model::{Measurement, PolarComponent};
+    /// use nalgebra::vector;
+    /// use std::f64::consts::PI;
+    ///
+    /// let radar = Measurement::Polar {
+    ///     components: [PolarComponent::Range, PolarComponent::Bearing],
+    ///     position: [0, 1],
+    ///     sensor: [0.0, 0.0],
+    /// };
+    /// assert_eq!(radar.of(&vector![-1.0, -1.0]), vector![2.0_f64.sqrt(), -0.75 * PI]);
+    /// assert_eq!((-1.0_f64 / -1.0).atan(), 0.25 * PI);
+    /// ```
     ///
     /// Evidence: `a_range_bearing_measurement_is_the_polar_form_of_the_position` (property),
     /// `plain_arctangent_confuses_opposite_quadrants`, `printed_arctangent_converts_the_first_point_to_the_opposite_one`.
@@ -116,6 +159,20 @@ impl<T: Real, const N: usize, const M: usize> Measurement<T, N, M> {
     ///
     /// Source: an angle's difference is an angle; the papers subtract without saying so, and liu2017's target is never near ±π.
     ///
+    /// Example: bearings of 135° and −135° are a quarter turn apart, across the negative x-axis. As plain numbers they are three quarters
+    /// apart.
+    ///
+    /// ```
+    /// use immaculate::model::{Measurement, PolarComponent};
+    /// use nalgebra::vector;
+    /// use std::f64::consts::PI;
+    ///
+    /// let bearing = Measurement::<f64, 2, 1>::Polar { components: [PolarComponent::Bearing], position: [0, 1], sensor: [0.0, 0.0] };
+    /// let (z, predicted) = (vector![0.75 * PI], vector![-0.75 * PI]);
+    /// assert_eq!(bearing.difference(&z, &predicted), vector![-0.5 * PI]);
+    /// assert_eq!(z - predicted, vector![1.5 * PI]);
+    /// ```
+    ///
     /// Evidence: `mirroring_the_scene_mirrors_the_answer`, `the_answer_does_not_depend_on_where_the_bearing_is_cut` (property).
     pub fn difference(&self, a: &SVector<T, M>, b: &SVector<T, M>) -> SVector<T, M> {
         let mut difference = a - b;
@@ -140,6 +197,20 @@ impl<T: Real, const N: usize, const M: usize> Measurement<T, N, M> {
     /// | Z_c   | `centre`     | M     | the measurement of the points' centre x̂       |
     ///
     /// Why: with Σ w = 1 the two forms are equal when no angle jumps, and only the second is right when one does.
+    ///
+    /// Example: the mean of 135° and −135°, seen from the centre at 180°, is 180°. As plain numbers it is 0°, the opposite direction.
+    ///
+    /// ```
+    /// use immaculate::model::{Measurement, PolarComponent};
+    /// use nalgebra::vector;
+    /// use std::f64::consts::PI;
+    ///
+    /// let bearing = Measurement::<f64, 2, 1>::Polar { components: [PolarComponent::Bearing], position: [0, 1], sensor: [0.0, 0.0] };
+    /// let values = [vector![0.75 * PI], vector![-0.75 * PI]];
+    /// // π + ½ · (−π/4) + ½ · (+π/4)
+    /// assert_eq!(bearing.mean(&[0.5, 0.5], &values, &vector![PI]), vector![PI]);
+    /// assert_eq!(values[0] * 0.5 + values[1] * 0.5, vector![0.0]);
+    /// ```
     ///
     /// Evidence: `the_answer_does_not_depend_on_where_the_bearing_is_cut` (property).
     pub fn mean(&self, weights: &[T], values: &[SVector<T, M>], centre: &SVector<T, M>) -> SVector<T, M> {

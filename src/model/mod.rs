@@ -5,8 +5,30 @@
 //! ([`measurement`]), how range and bearing become a position ([`conversion`]), what that does to their noise ([`conversion_moments`])
 //! and how far it can be trusted ([`conversion_validity`]), and what happens to angles at ±π ([`angle`]).
 //!
+//! ```text
+//! state ─ F, Q of a mode ─▶ state a step later ─ h, R of the sensor ─▶ measurement ( ─ conversion ─▶ position and its covariance )
+//! ```
+//!
+//! Reading order: [`motion`], [`measurement`] and [`angle`] are all that zhu2016 and liu2017 need; [`acceleration`] is derbez2000's target;
+//! [`wiener`] and the three files of the conversion are sustika2015's.
+//!
 //! State order is [x, ẋ, y, ẏ] in metres and metres per second, and in [`wiener`] [x, y, ẋ, ẏ, ẍ, ÿ]; turn rates are in radians per
 //! second, positive to the left.
+//!
+//! Example: a straight target and a turning one, seen by the same radar after a second.
+//!
+//! ```
+//! use immaculate::model::motion::{constant_velocity, turn_matrix};
+//! use immaculate::model::{Measurement, PolarComponent};
+//! use nalgebra::vector;
+//!
+//! let range = Measurement::Polar { components: [PolarComponent::Range], position: [0, 2], sensor: [0.0, 0.0] };
+//! let state = vector![0.0, 3.0, 4.0, 0.0]; // [x, ẋ, y, ẏ]: 4 m to the north, eastward at 3 m/s
+//! // Straight it is at (3, 4), √(3² + 4²) away.
+//! assert_eq!(range.of(&(constant_velocity(&1.0) * state)), vector![5.0]);
+//! // With a quarter turn to the left, sin ωT = 1 and cos ωT = 0 at 3 rad/s, at (1, 4 + 1): √(1² + 5²).
+//! assert_eq!(range.of(&(turn_matrix(&3.0, &1.0, &0.0, &1.0) * state)), vector![26.0_f64.sqrt()]);
+//! ```
 
 pub mod acceleration;
 pub mod angle;

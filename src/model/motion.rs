@@ -8,6 +8,10 @@
 //! ```
 //!
 //! where A is the generator of the motion and L puts the noise on the velocities. A state is [x, ẋ, y, ẏ].
+//!
+//! Reading order: a [`Mode`] is such a pair with a name; [`constant_velocity`] and [`integrated_noise`] are the plainest one,
+//! [`coordinated_turn`] and [`turn_noise`] the same along a circle, and [`acceleration_noise`] is the noise of zhu2016, whose acceleration
+//! is constant over a step and not white.
 
 use crate::number::{Field, Real};
 use nalgebra::{Matrix4, Matrix4x2, SMatrix};
@@ -20,6 +24,18 @@ use nalgebra::{Matrix4, Matrix4x2, SMatrix};
 ///
 /// Why: the papers allow a nonlinear f here and use linear ones only, zhu2016 (61) and liu2017 (25), (28). So does this crate;
 /// the cubature filters push their points through F one by one all the same.
+///
+/// Example: a mode is two matrices and a name. Its state moves with F, and the uncertainty Q comes on top.
+///
+/// ```
+/// use immaculate::model::motion::{Mode, constant_velocity, integrated_noise};
+/// use nalgebra::vector;
+///
+/// let straight = Mode { name: "straight".into(), transition: constant_velocity(&2.0), noise: integrated_noise(&3.0, &2.0) };
+/// // 10 + 2 · 3 and 20 + 2 · (−1); after that x has the variance 3 · 2³/3, if it was known before
+/// assert_eq!(straight.transition * vector![10.0, 3.0, 20.0, -1.0], vector![16.0, 3.0, 18.0, -1.0]);
+/// assert_eq!(straight.noise[(0, 0)], 8.0);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mode<T, const N: usize> {
     /// The mode's name.
@@ -35,6 +51,20 @@ impl<T: Field, const N: usize> Mode<T, N> {
     /// models of unequal dimensions share one state, constant velocity and constant acceleration for instance.
     ///
     /// Source: derbez2000 (5), where the last row of F is zero.
+    ///
+    /// Example: constant velocity among states with an acceleration.
+    ///
+    /// ```
+    /// use immaculate::model::{acceleration, motion::Mode};
+    ///
+    /// let response = acceleration::embedded_velocity_response(&1.0);
+    /// let mode = Mode {
+    ///     name: "constant velocity".into(),
+    ///     transition: acceleration::embedded_constant_velocity(&1.0),
+    ///     noise: acceleration::response_noise(&response, &1.0),
+    /// };
+    /// assert_eq!([0, 1, 2].map(|entry| mode.lacks(entry)), [false, false, true]);
+    /// ```
     pub fn lacks(&self, entry: usize) -> bool {
         let is_zero = |matrix: &SMatrix<T, N, N>| matrix.row(entry).iter().all(T::is_zero);
         is_zero(&self.transition) && is_zero(&self.noise)
@@ -52,6 +82,16 @@ impl<T: Field, const N: usize> Mode<T, N> {
 /// | T     | `interval` | s    | the sampling interval |
 ///
 /// Why: e^{AT} with A = [0 1; 0 0] per axis, which is nilpotent: I + AT.
+///
+/// Example: two seconds at (3, −1) m/s.
+///
+/// ```
+/// use immaculate::model::motion::constant_velocity;
+/// use nalgebra::vector;
+///
+/// // 10 + 2 · 3, 20 + 2 · (−1)
+/// assert_eq!(constant_velocity(&2.0) * vector![10.0, 3.0, 20.0, -1.0], vector![16.0, 3.0, 18.0, -1.0]);
+/// ```
 ///
 /// Errata: zhu2016 uses this model as its first and never prints it.
 ///
@@ -84,6 +124,20 @@ pub fn constant_velocity<T: Field>(interval: &T) -> Matrix4<T> {
 /// Why: the velocity turns with rate ω, and the position is its integral. At ω = 0 the quotients are replaced by their limits, T
 /// and 0: constant velocity. 1 − cos ωT is evaluated as 2 sin²(ωT/2), the same number without its cancellation.
 ///
+/// Example: a quarter turn to the left in one second, eastward at π/2 m/s. That is a circle of radius 1 m: the target ends at (1, 1),
+/// northward.
+///
+/// ```
+/// use immaculate::model::motion::{constant_velocity, coordinated_turn};
+/// use nalgebra::vector;
+/// use std::f64::consts::FRAC_PI_2;
+///
+/// let after = coordinated_turn(&FRAC_PI_2, &1.0) * vector![0.0, FRAC_PI_2, 0.0, 0.0];
+/// // Two units in the last place of 1: the double nearest to π/2 is not π/2, and its cosine is 6·10⁻¹⁷.
+/// assert!((after - vector![1.0, 0.0, 1.0, FRAC_PI_2]).amax() <= 2.0 * f64::EPSILON);
+/// assert_eq!(coordinated_turn(&0.0, &2.0), constant_velocity(&2.0));
+/// ```
+///
 /// Errata: both papers print turn rates of ±3° without "per second", and in degrees.
 ///
 /// Evidence: `motion_composes_over_time` (symbolic), `a_turn_of_rate_zero_is_constant_velocity` (exact),
@@ -99,6 +153,16 @@ pub fn coordinated_turn<T: Real>(turn_rate: &T, interval: &T) -> Matrix4<T> {
 }
 
 /// The matrix of [`coordinated_turn`] from sin ωT, cos ωT and 1 − cos ωT — zhu2016 (61), liu2017 (29).
+///
+/// Example: the same quarter turn in exact numbers, sine 1 and cosine 0, at 2 rad/s and 2 m/s.
+///
+/// ```
+/// use immaculate::model::motion::turn_matrix;
+/// use nalgebra::vector;
+///
+/// // x: 2 · 1/2, ẋ: 2 · 0, y: 2 · (1 − 0)/2, ẏ: 2 · 1
+/// assert_eq!(turn_matrix(&2.0, &1.0, &0.0, &1.0) * vector![0.0, 2.0, 0.0, 0.0], vector![1.0, 0.0, 1.0, 2.0]);
+/// ```
 ///
 /// Evidence: as [`coordinated_turn`].
 #[rustfmt::skip]
@@ -136,6 +200,18 @@ pub fn turn_matrix<T: Field>(
 /// liu2017 uses it for the turning modes too, in (30); the integral along a turn is [`turn_noise`], which differs in the terms
 /// that couple the axes, by about ωT/3 of the entry T²/2.
 ///
+/// Example: two seconds with q = 3.
+///
+/// ```
+/// use immaculate::model::motion::integrated_noise;
+/// use nalgebra::matrix;
+///
+/// // 3 · 2³/3, 3 · 2²/2, 3 · 2; the axes know nothing of each other.
+/// let noise = integrated_noise(&3.0, &2.0);
+/// assert_eq!(noise.fixed_view::<2, 2>(0, 0), matrix![8.0, 6.0; 6.0, 6.0]);
+/// assert_eq!(noise.fixed_view::<2, 2>(0, 2), matrix![0.0, 0.0; 0.0, 0.0]);
+/// ```
+///
 /// Evidence: `constant_velocity_noise_is_its_integral` (symbolic).
 #[rustfmt::skip]
 pub fn integrated_noise<T: Field>(density: &T, interval: &T) -> Matrix4<T> {
@@ -163,6 +239,20 @@ pub fn integrated_noise<T: Field>(density: &T, interval: &T) -> Matrix4<T> {
 ///
 /// Source: the integral at the head of this file along [`turn_matrix`]; neither paper uses it. As ω → 0 it tends to
 /// [`integrated_noise`].
+///
+/// Example: a quarter turn at 1 rad/s, which takes T = π/2, with q = 1. What [`integrated_noise`] lacks is the last block: noise on one
+/// axis is carried into the other.
+///
+/// ```
+/// use immaculate::model::motion::turn_noise;
+/// use nalgebra::matrix;
+///
+/// let t = std::f64::consts::FRAC_PI_2;
+/// let noise = turn_noise(&1.0, &1.0, &t, &1.0, &0.0);
+/// let lag = t - 1.0; // T − sin ωT / ω
+/// assert_eq!(noise.fixed_view::<2, 2>(0, 0), matrix![2.0 * lag, 1.0; 1.0, t]);
+/// assert_eq!(noise.fixed_view::<2, 2>(0, 2), matrix![0.0, lag; -lag, 0.0]);
+/// ```
 ///
 /// Evidence: `turn_noise_is_its_integral` (symbolic).
 #[rustfmt::skip]
@@ -195,6 +285,16 @@ pub fn turn_noise<T: Field>(
 /// ```
 ///
 /// Source: zhu2016, section 4, not numbered.
+///
+/// Example: (3, −1) m/s² during two seconds.
+///
+/// ```
+/// use immaculate::model::motion::acceleration_input;
+/// use nalgebra::vector;
+///
+/// // 3 · 2²/2, 3 · 2, −1 · 2²/2, −1 · 2
+/// assert_eq!(acceleration_input(&2.0) * vector![3.0, -1.0], vector![6.0, 6.0, -2.0, -2.0]);
+/// ```
 #[rustfmt::skip]
 pub fn acceleration_input<T: Field>(interval: &T) -> Matrix4x2<T> {
     let t = || interval.clone();
@@ -212,6 +312,18 @@ pub fn acceleration_input<T: Field>(interval: &T) -> Matrix4x2<T> {
 ///
 /// Source: zhu2016, section 4, not numbered: "process noise Q ~ N(0, q), q = diag(10, 10)", "process noise weight matrix G".
 /// `variance` is in (m/s²)².
+///
+/// Example: position and velocity of an axis get their noise from one number, so that they are fully correlated: 12² = 12 · 12.
+///
+/// ```
+/// use immaculate::model::motion::acceleration_noise;
+/// use nalgebra::matrix;
+///
+/// // 3 · (2²/2)², 3 · (2²/2) · 2, 3 · 2²
+/// assert_eq!(acceleration_noise(&3.0, &2.0).fixed_view::<2, 2>(0, 0), matrix![12.0, 12.0; 12.0, 12.0]);
+/// // In one second they are ¾, 3/2 and 3.
+/// assert_eq!(acceleration_noise(&3.0, &1.0).fixed_view::<2, 2>(0, 0), matrix![0.75, 1.5; 1.5, 3.0]);
+/// ```
 pub fn acceleration_noise<T: Field>(variance: &T, interval: &T) -> Matrix4<T> {
     let g = acceleration_input(interval);
     (&g * g.transpose()) * variance.clone()

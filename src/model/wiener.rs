@@ -25,6 +25,17 @@ use nalgebra::{Matrix3, Matrix6};
 ///
 /// Source: sustika2015, section 2.1: the state is [x y ẋ ẏ ẍ ÿ]ᵀ, so that the coordinate c of the plane changes faster than the derivative.
 ///
+/// Example: positions first, then velocities, then accelerations.
+///
+/// ```
+/// use immaculate::model::wiener::in_the_plane;
+/// use nalgebra::{matrix, vector};
+///
+/// let two_seconds = in_the_plane(&matrix![1.0, 2.0, 0.0; 0.0, 1.0, 0.0; 0.0, 0.0, 1.0]);
+/// // 10 + 2 · 3, 20 + 2 · (−1)
+/// assert_eq!(two_seconds * vector![10.0, 20.0, 3.0, -1.0, 0.0, 0.0], vector![16.0, 18.0, 3.0, -1.0, 0.0, 0.0]);
+/// ```
+///
 /// Evidence: `the_motion_of_the_plane_is_that_of_each_coordinate` (symbolic).
 pub fn in_the_plane<T: Field>(axis: &Matrix3<T>) -> Matrix6<T> {
     Matrix6::from_fn(|row, column| {
@@ -51,6 +62,17 @@ pub fn in_the_plane<T: Field>(axis: &Matrix3<T>) -> Matrix6<T> {
 /// Why: the model has no acceleration; its estimate of one is zero, and so is the variance of it. Everything else is the model of four
 /// dimensions [x, y, ẋ, ẏ].
 ///
+/// Example: two seconds at (3, −1) m/s; the accelerations are dropped.
+///
+/// ```
+/// use immaculate::model::wiener::constant_velocity_in_the_plane;
+/// use nalgebra::vector;
+///
+/// let state = vector![10.0, 20.0, 3.0, -1.0, 5.0, 7.0];
+/// // 10 + 2 · 3, 20 + 2 · (−1)
+/// assert_eq!(constant_velocity_in_the_plane(&2.0) * state, vector![16.0, 18.0, 3.0, -1.0, 0.0, 0.0]);
+/// ```
+///
 /// Errata: the matrix is never printed.
 ///
 /// Evidence: `the_motions_of_the_plane_compose_over_time` (symbolic).
@@ -71,6 +93,17 @@ pub fn constant_velocity_in_the_plane<T: Field>(interval: &T) -> Matrix6<T> {
 /// | T     | `interval` | s    | the sampling interval |
 ///
 /// Why: e^{AT} with the generator [0 1 0; 0 0 1; 0 0 0] of either coordinate.
+///
+/// Example: the same with the accelerations (5, 7) m/s².
+///
+/// ```
+/// use immaculate::model::wiener::constant_acceleration_in_the_plane;
+/// use nalgebra::vector;
+///
+/// let state = vector![10.0, 20.0, 3.0, -1.0, 5.0, 7.0];
+/// // 16 + 5 · 2²/2, 18 + 7 · 2²/2; 3 + 5 · 2, −1 + 7 · 2
+/// assert_eq!(constant_acceleration_in_the_plane(&2.0) * state, vector![26.0, 32.0, 13.0, 13.0, 5.0, 7.0]);
+/// ```
 ///
 /// Errata: the matrix is never printed.
 ///
@@ -93,6 +126,17 @@ pub fn constant_acceleration_in_the_plane<T: Field>(interval: &T) -> Matrix6<T> 
 /// | T     | `interval` | s     | the sampling interval                           |
 ///
 /// Why: ∫₀ᵀ [τ; 1] q [τ; 1]ᵀ dτ per coordinate. "Psd of process noise" in table 1 is a density, so the noise is white in continuous time.
+///
+/// Example: two seconds with q = 3, the rows and columns of x and ẋ, and of ẍ.
+///
+/// ```
+/// use immaculate::model::wiener::velocity_noise_in_the_plane;
+///
+/// let noise = velocity_noise_in_the_plane(&3.0, &2.0);
+/// // 3 · 2³/3, 3 · 2²/2, 3 · 2
+/// assert_eq!([(0, 0), (0, 2), (2, 2)].map(|at| noise[at]), [8.0, 6.0, 6.0]);
+/// assert_eq!(noise[(4, 4)], 0.0);
+/// ```
 ///
 /// Errata: the matrix is never printed.
 ///
@@ -123,6 +167,18 @@ pub fn velocity_noise_in_the_plane<T: Field>(density: &T, interval: &T) -> Matri
 /// | T     | `interval` | s     | the sampling interval                                   |
 ///
 /// Why: ∫₀ᵀ [τ²/2; τ; 1] q [τ²/2; τ; 1]ᵀ dτ per coordinate.
+///
+/// Example: two seconds with q = 15, the rows and columns of x, ẋ and ẍ. The noise of another q is no multiple of the constant velocity's.
+///
+/// ```
+/// use immaculate::model::wiener::acceleration_noise_in_the_plane;
+///
+/// let noise = acceleration_noise_in_the_plane(&15.0, &2.0);
+/// // 15 · 2⁵/20, 15 · 2⁴/8, 15 · 2³/6
+/// assert_eq!([(0, 0), (0, 2), (0, 4)].map(|at| noise[at]), [24.0, 30.0, 20.0]);
+/// // 15 · 2³/3, 15 · 2²/2, 15 · 2
+/// assert_eq!([(2, 2), (2, 4), (4, 4)].map(|at| noise[at]), [40.0, 30.0, 30.0]);
+/// ```
 ///
 /// Errata: the matrix is never printed; table 1 gives one number for both densities, whose units differ.
 ///

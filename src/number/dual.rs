@@ -25,6 +25,8 @@ use std::fmt;
 
 /// A number and its first-order change.
 ///
+/// Example: a derivative that is proven by evaluating the function.
+///
 /// ```
 /// use immaculate::number::{Dual, Field, RationalFunction};
 ///

@@ -17,12 +17,35 @@
 //! | [`Counting`]                          | [`Real`]                  | how many operations an equation costs           |
 //! | [`Dual`] over another                 | that of the other         | derivatives, proven or certified                |
 //!
+//! Reading order: the three traits here; [`Rational`], [`Surd`], [`RationalFunction`] (with [`Polynomial`]), which are exact;
+//! [`Enclosure`], which knows how far it is off, and the doubles, which do not; [`Dual`], [`RandomRounding`] and [`Counting`], which say
+//! something about an evaluation besides its value.
+//!
 //! Three traits say what an equation needs, and an equation has the weakest bound it can live with:
 //! [`Field`] (+ − × ÷), [`Roots`] (the square roots of rationals, all that cubature points need) and [`Real`]
 //! (roots, exp, ln, sin, cos, atan2, π, and an order).
 //!
 //! An operation that has no answer (a division by zero, say) is a value that says so, [`Field::undecided`], and never a
 //! panic: it is unequal to everything, itself included, and every operation on it gives it again.
+//!
+//! Example: the gain of a filter with one state, p/(p + r), written once.
+//!
+//! ```
+//! use immaculate::number::{Dual, Field, Rational, RationalFunction};
+//!
+//! fn gain<T: Field>(p: T, r: T) -> T {
+//!     p.clone() / (p + r)
+//! }
+//!
+//! // As a filter computes it, and exactly.
+//! assert_eq!(gain(1.0, 3.0), 0.25);
+//! assert_eq!(gain(Rational::integer(1), Rational::integer(2)), Rational::new(1, 3));
+//! // Prediction and measurement share the weight, for all p and r: p/(p + r) + r/(r + p) = 1.
+//! let [p, r] = ["p", "r"].map(RationalFunction::unknown);
+//! assert_eq!(gain(p.clone(), r.clone()) + gain(r, p), RationalFunction::integer(1));
+//! // The slope in p is r/(p + r)²: 3/16 at p = 1, r = 3.
+//! assert_eq!(*gain(Dual::variable(1.0), Dual::constant(3.0)).slope(), 3.0 / 16.0);
+//! ```
 
 mod counting;
 mod decimal;
@@ -53,6 +76,16 @@ use std::ops::Neg;
 /// A number that can be added, subtracted, multiplied and divided: all that most equations of a filter need.
 ///
 /// The bounds are those under which nalgebra multiplies and adds matrices with shapes in their types.
+///
+/// Example: the same fraction in two number systems, and a division that has no answer.
+///
+/// ```
+/// use immaculate::number::{Field, Rational};
+///
+/// assert_eq!((f64::ratio(1, 4), Rational::ratio(1, 4)), (0.25, Rational::new(1, 4)));
+/// let undecided = Rational::integer(1) / Rational::integer(0);
+/// assert!(!undecided.is_decided() && undecided != undecided.clone());
+/// ```
 pub trait Field:
     Scalar + Zero + One + ClosedAddAssign + ClosedSubAssign + ClosedMulAssign + ClosedDivAssign + Neg<Output = Self>
 {
@@ -79,6 +112,16 @@ pub trait Field:
 }
 
 /// A field that also holds the square roots of rationals: the coordinates of cubature points.
+///
+/// Example: the distance of a cubature point, √3, exactly and as the nearest double.
+///
+/// ```
+/// use immaculate::number::{Field, Rational, Roots, Surd};
+///
+/// let root = Surd::root(&Rational::new(3, 1));
+/// assert_eq!(Surd::surd(&root) * Surd::surd(&root), Surd::integer(3));
+/// assert_eq!(f64::surd(&root), 3.0_f64.sqrt());
+/// ```
 pub trait Roots: Field {
     /// The surd in this number system: exact where it can be, else the nearest.
     fn surd(value: &Surd) -> Self;
@@ -88,6 +131,15 @@ pub trait Roots: Field {
 ///
 /// `partial_cmp` answers `None` where a comparison cannot be decided; an equation that branches on a comparison must
 /// say what it does then.
+///
+/// Example: an angle on the cut is +π, and a root that does not exist is undecided.
+///
+/// ```
+/// use immaculate::number::{Field, Real};
+///
+/// assert_eq!(Real::atan2(&0.0, &-1.0), f64::pi());
+/// assert!(!Real::sqrt(&-1.0_f64).is_decided());
+/// ```
 pub trait Real: Roots + PartialOrd {
     /// The ratio of a circle's circumference to its diameter.
     fn pi() -> Self;

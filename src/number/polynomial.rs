@@ -27,6 +27,8 @@ type PrintingOrder = (Reverse<u64>, Vec<(Arc<str>, Reverse<u32>)>);
 
 /// A polynomial in named unknowns, or the statement that an operation had no answer.
 ///
+/// Example: (x + y)² is multiplied out, and evaluated at ½ and 5/2.
+///
 /// ```
 /// use immaculate::number::{Polynomial, Rational};
 ///

@@ -17,6 +17,8 @@ use std::fmt;
 
 /// An exact rational number, or the statement that an operation had no answer.
 ///
+/// Example: thirds are thirds, decimals are what they say, and a division by zero is a value.
+///
 /// ```
 /// use immaculate::number::{Field, Rational};
 ///
@@ -90,6 +92,8 @@ impl Rational {
     }
 
     /// The decimal nearest to the number with so many digits after the point, ties to the even last digit.
+    ///
+    /// Example: −2/3 to four digits.
     ///
     /// ```
     /// use immaculate::number::Rational;

@@ -13,6 +13,8 @@ use std::fmt;
 
 /// A fraction of two polynomials, or the statement that an operation had no answer.
 ///
+/// Example: (n² − 1)/(n − 1) is n + 1 for every n, and a function has no value where its denominator is zero.
+///
 /// ```
 /// use immaculate::number::{Field, Rational, RationalFunction};
 ///

@@ -21,6 +21,8 @@ use std::fmt;
 
 /// An exact sum of rational multiples of square roots, or the statement that an operation had no answer.
 ///
+/// Example: √8 · √3 = 2√6, a denominator that is made rational, and an order without a tolerance.
+///
 /// ```
 /// use immaculate::number::{Field, Rational, Surd};
 ///

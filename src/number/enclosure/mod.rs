@@ -49,6 +49,8 @@ thread_local! {
 
 /// A number that is known to lie in an interval, or the statement that an operation had no answer.
 ///
+/// Example: a third to twenty digits, proven.
+///
 /// ```
 /// use immaculate::number::{Enclosure, Field, Rational, Real};
 ///
