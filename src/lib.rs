@@ -120,7 +120,8 @@
 //! # From a printed number to everything about it
 //!
 //! The first line of a doc comment ends with the numbers that its item realises, in one fixed form after a dash:
-//! `zhu2016 (56), liu2017 (12)`, or `zhu2016 (14)-(20)` for several in a row. A search for `zhu2016 (56)` finds those that stand alone, here and in the source, and
+//! `zhu2016 (56), liu2017 (12)`, or `zhu2016 (14)-(20)` for several in a row. A search for
+//! `zhu2016 (56)` finds those that stand alone, here and in the source, and
 //!
 //! ```text
 //! immaculate equation "zhu2016 56"

@@ -10,7 +10,7 @@
 //! spec/variants.toml ──────────┘
 //! ```
 //!
-//! - [`reference`]: how comments name an equation;
+//! - [`mod@reference`]: how comments name an equation;
 //! - [`source`]: items and tests, from the files that are built into the program;
 //! - [`doc`]: a doc comment in its parts;
 //! - [`find`]: an equation by its number, name, quantity or function;

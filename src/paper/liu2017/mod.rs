@@ -5,7 +5,7 @@
 //!
 //! The paper in its own order, section by section:
 //!
-//! - 2 motion and measurement, (1): [`Mode`](crate::model::motion::Mode), [`Measurement`](crate::model::Measurement)
+//! - 2 motion and measurement, (1): [`Mode`], [`Measurement`]
 //! - 2.1 the integral, (2), (3): the head of [`crate::rule`]
 //! - 2.1.1 spherical rule, (4)-(7): [`sphere_vertex_weight`](crate::rule::simplex::sphere_vertex_weight),
 //!   [`sphere_edge_weight`](crate::rule::simplex::sphere_edge_weight), [`vertices`](crate::rule::simplex::vertices),
@@ -25,9 +25,9 @@
 //! - 3, step 3, probabilities, (21), (22): [`log_density`](crate::gaussian::log_density),
 //!   [`mode_probability`](crate::imm::probability::mode_probability); as printed in [`imm::printed`](crate::imm::printed)
 //! - 3, step 4, output, (23), (24): the mixture again
-//! - 4.1 models, (25)-(32): [`constant_velocity`](crate::model::motion::constant_velocity),
-//!   [`coordinated_turn`](crate::model::motion::coordinated_turn), [`integrated_noise`](crate::model::motion::integrated_noise),
-//!   [`Measurement::Polar`](crate::model::Measurement::Polar), [`TRANSITION`], [`scenario`]
+//! - 4.1 models, (25)-(32): [`constant_velocity`],
+//!   [`coordinated_turn`](crate::model::motion::coordinated_turn), [`integrated_noise`],
+//!   [`Measurement::Polar`], [`TRANSITION`], [`scenario`]
 //! - 4.2 figures, table 1, (33), (34): [`root_mean_square`](crate::statistics::rmse::root_mean_square),
 //!   [`accumulated`](crate::statistics::rmse::accumulated), [`Reproduction`](super::result::Reproduction)
 //! - the claims: [`claims::judge`]

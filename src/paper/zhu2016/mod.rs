@@ -26,7 +26,7 @@
 //!   [`mode_probability`](crate::imm::probability::mode_probability); as printed in [`imm::printed`](crate::imm::printed)
 //! - 3.4 output integration, (59), (60): the mixture again
 //! - 4 scenario, (61)-(63): [`coordinated_turn`](crate::model::motion::coordinated_turn),
-//!   [`acceleration_noise`](crate::model::motion::acceleration_noise), [`TRANSITION`], [`scenario`]
+//!   [`acceleration_noise`], [`TRANSITION`], [`scenario`]
 //! - 4 figures, table 1, (64): [`root_mean_square`](crate::statistics::rmse::root_mean_square),
 //!   [`Reproduction`](super::result::Reproduction)
 //! - the claims: [`claims::judge`]
