@@ -17,7 +17,9 @@
 //! use immaculate::model::{Measurement, motion::Mode};
 //! use nalgebra::{matrix, vector};
 //!
-//! let mode = |name: &str, noise: f64| Mode { name: name.into(), transition: matrix![1.0], noise: matrix![noise] };
+//! let mode = |name: &str, noise: f64| {
+//!     Mode { name: name.into(), transition: matrix![1.0], noise: matrix![noise] }
+//! };
 //! let problem = Problem {
 //!     modes: vec![mode("quiet", 1.0), mode("lively", 13.0)],
 //!     transition: vec![vec![0.5, 0.5], vec![0.5, 0.5]], // row i: from mode i
@@ -42,8 +44,8 @@
 //! // Update: gains 3/4 and 15/16, variances 3 − 9/4 and 15 − 225/16.
 //! assert_eq!([0, 1].map(|j| step.gains[j][0]), [0.75, 0.9375]);
 //! assert_eq!([0, 1].map(|j| step.updated[j].covariance[0]), [0.75, 0.9375]);
-//! // Both predictions are hit, which speaks for the mode that was the surer: 1/√4 to 1/√16, so 2/3 to 1/3.
-//! // (A logarithm and an exponential of it are rounded in their last place.)
+//! // Both predictions are hit, which speaks for the mode that was the surer:
+//! // 1/√4 to 1/√16, so 2/3 to 1/3. (A logarithm and an exponential of it are rounded in their last place.)
 //! assert!((step.mode_probabilities[0] - 2.0 / 3.0).abs() <= 2.0 * f64::EPSILON);
 //! // For output: 2/3 · 3/4 + 1/3 · 15/16 = 13/16, and no spread, for both means are 2.
 //! assert_eq!(step.combined.mean, vector![2.0]);

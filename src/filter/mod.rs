@@ -4,9 +4,9 @@
 //! share their last three equations:
 //!
 //! ```text
-//! kalman:    x̂, P ─ F, Q ─▶ predicted ─ H, R ─▶ ẑ, S, C ─┐
-//!                                                        ├─▶ gain ─▶ updated mean, updated covariance
-//! cubature:  x̂, P ─▶ points ─ f, Q ─▶ predicted ─▶ fresh points ─ h, R ─▶ ẑ, S, C ─┘
+//! kalman:    x̂, P ─ F, Q ─▶ predicted ─ H, R ─▶ ẑ, S, C ────────────────────────────┐
+//!                                                                                   ├─▶ update
+//! cubature:  x̂, P ─▶ points ─ f, Q ─▶ predicted ─▶ fresh points ─ h, R ─▶ ẑ, S, C ──┘
 //! ```
 //!
 //! Reading order:
@@ -33,8 +33,9 @@
 //! let s = kalman::innovation_covariance(&h, &p, &r); // 2 · 25 · 2 + 100
 //! let w = update::gain(&kalman::cross_covariance(&p, &h), &ldl(&s)); // 25 · 2 / 200
 //! assert_eq!((x, p, s, w), (vector![10.0], matrix![25.0], matrix![200.0], matrix![0.25]));
-//! assert_eq!(update::updated_mean(&x, &w, &(vector![24.0] - h * x)), vector![11.0]); // 10 + ¼ · (24 − 20)
-//! assert_eq!(update::updated_covariance(&p, &w, &s), matrix![12.5]); // 25 − ¼ · 200 · ¼
+//! // 10 + ¼ · (24 − 20), 25 − ¼ · 200 · ¼
+//! assert_eq!(update::updated_mean(&x, &w, &(vector![24.0] - h * x)), vector![11.0]);
+//! assert_eq!(update::updated_covariance(&p, &w, &s), matrix![12.5]);
 //!
 //! // The two points of the third-degree rule in one dimension: ±1, half and half.
 //! let (weights, sensor) = ([0.5, 0.5], Measurement::Linear(h));
@@ -42,11 +43,13 @@
 //!     let root = cholesky(covariance).unwrap();
 //!     [1.0, -1.0].map(|xi| cubature::point(&root, &vector![xi], mean))
 //! };
-//! let points = draw(&mean, &covariance).map(|x| cubature::propagated_point(&f, &x)); // 2 · (5 ± 2)
+//! // 2 · (5 ± 2)
+//! let points = draw(&mean, &covariance).map(|x| cubature::propagated_point(&f, &x));
 //! assert_eq!(cubature::weighted_mean(&weights, &points), x);
 //! assert_eq!(cubature::weighted_covariance(&weights, &points, &x, &q), p);
 //! let values = draw(&x, &p).map(|x| sensor.of(&x)); // 2 · (10 ± 5)
-//! assert_eq!(cubature::innovation_covariance(&sensor, &weights, &values, &vector![20.0], &r), s);
+//! let z = vector![20.0];
+//! assert_eq!(cubature::innovation_covariance(&sensor, &weights, &values, &z, &r), s);
 //! ```
 
 pub mod converted;
