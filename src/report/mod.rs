@@ -4,10 +4,12 @@
 //! themselves; nothing is computed here.
 //!
 //! - [`rule`]: points and weights; [`trace`]: a run step by step; [`cases`], [`variants`], [`claims`]: the lists of what there is;
-//! - [`reproduction`], [`figure`], [`long_term`], [`fit_error`], [`divergence`]: the papers' tables and figures, published and computed;
+//! - [`reproduction`], [`published`], [`figure`], [`path`], [`long_term`], [`fit_error`], [`divergence`]: the papers' tables and figures,
+//!   published and computed;
 //! - [`conversion`]: where a converted measurement can be trusted;
 //! - [`stability`], [`stability_map`]: two fixed-gain filters, and all pairs of them;
 //! - [`check`], [`check_json`]: the verdict on a program under test;
+//! - [`chart`], [`palette`]: what all figures have in common;
 //! - [`page`]: all of the papers' results in one file.
 
 pub mod cases;
