@@ -183,7 +183,7 @@ fn headings_nest_and_landmarks_are_named() {
             "<h3>x</h3>",
             "<h2> </h2>",
             "<h1>x</h1>",
-            "<section></section>",
+            "<div role=\"region\" tabindex=\"0\"></div>",
             "<nav></nav>",
         ],
     );
