@@ -33,7 +33,7 @@ pub enum PartKind {
 pub struct Part {
     /// What it is.
     pub kind: PartKind,
-    /// Its markdown; of a formula the lines alone.
+    /// Its markdown without the label, but for "Why:"; of a formula the lines alone.
     pub text: String,
 }
 
@@ -90,7 +90,12 @@ impl Doc {
             if let Some((word, kind)) = label {
                 // The code of an example belongs to its sentence.
                 under = (word.starts_with('#') || *kind == PartKind::Example).then_some(*kind);
-                let text = block[word.len()..].trim();
+                // "Why:" is the beginning of a sentence that others may follow without it.
+                let text = if *kind == PartKind::Derivation {
+                    block.as_str()
+                } else {
+                    block[word.len()..].trim()
+                };
                 if !text.is_empty() {
                     parts.push(Part {
                         kind: *kind,

@@ -36,7 +36,7 @@ fn section(entry: &Entry) -> Markup {
     let equation = entry.equation;
     html! {
         section class="equation" id=(entry.anchor()) {
-            h4 { (entry.reference) }
+            h4 { (entry.reference) ": " (entry.title()) }
             p class="meaning" { (equation.meaning) }
             div class="formula" { (formula(&equation.latex)) }
             p class={ "status " (equation.status) } { (status(&equation.status)) }
