@@ -139,7 +139,7 @@ impl Doc {
         self.of(PartKind::Evidence).flat_map(named_tests).collect()
     }
 
-    /// The items whose evidence this item has too: "as [`point`](fn@point)".
+    /// The items whose evidence this item has too: those that its evidence links to.
     pub fn evidence_of(&self) -> Vec<String> {
         let linked = self.of(PartKind::Evidence).flat_map(|text| {
             let after = text.split("[`").skip(1);
