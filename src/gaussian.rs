@@ -33,7 +33,8 @@ impl<T: Field, const N: usize> Gaussian<T, N> {
     }
 }
 
-/// Mean of a mixture — sustika2015 (7), (12), zhu2016 (55), (59), liu2017 (12), (23); derbez2000, not numbered.
+/// Mean of a mixture — sustika2015 (7), (12), zhu2016 (55), (59), liu2017 (12), (23), derbez2000 (mixed-mean),
+/// (combined-estimate).
 ///
 /// ```text
 /// x̂⁰ʲ = Σᵢ μᵢ∣ⱼ · x̂ⁱ   (mixed)          x̂ = Σⱼ μʲ · x̂ʲ   (combined)
@@ -69,7 +70,8 @@ pub fn mixture_mean<T: Field, const N: usize>(weights: &[T], components: &[Gauss
     sum
 }
 
-/// Covariance of a mixture — derbez2000 (1), sustika2015 (8), (13), zhu2016 (56), (60), liu2017 (12), (24).
+/// Covariance of a mixture — derbez2000 (1), (combined-estimate), (moment-matching), sustika2015 (8), (13), zhu2016 (56), (60),
+/// liu2017 (12), (24).
 ///
 /// ```text
 /// P⁰ʲ = Σᵢ μᵢ∣ⱼ · [ Pⁱ + (x̂ⁱ − x̂⁰ʲ)(x̂ⁱ − x̂⁰ʲ)ᵀ ]   (mixed)
@@ -127,7 +129,7 @@ pub fn mixture_covariance<T: Field, const N: usize>(
     sum
 }
 
-/// Natural logarithm of the Gaussian density of a residual — sustika2015 (9), zhu2016 (57), liu2017 (21).
+/// Natural logarithm of the Gaussian density of a residual — sustika2015 (9), zhu2016 (57), liu2017 (21), derbez2000 (likelihood).
 ///
 /// ```text
 /// ln L = −½ ( νᵀ S⁻¹ ν + ln|2πS| ),     that is  L = |2πS|^(−½) · exp(−½ νᵀ S⁻¹ ν)

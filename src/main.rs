@@ -48,6 +48,8 @@ enum Command {
     Cases(cli::cases::Cases),
     /// List the catalogue of mistakes, conventions and forms that `check` can name
     Variants(cli::variants::Variants),
+    /// Show an equation of the papers: formula, erratum, derivation, code, tests, and what catches mistakes in it
+    Equation(cli::equation::Equation),
     /// Prove two fixed-gain filters that exchange estimates stable together, or unstable; map, certificates
     Stability(cli::stability::Stability),
     /// Be a program under test: this crate's own filter, with mistakes planted on demand
@@ -112,6 +114,7 @@ fn main() -> ExitCode {
         Command::Trace(arguments) => cli::trace::run(arguments),
         Command::Cases(arguments) => cli::cases::run(arguments),
         Command::Variants(arguments) => cli::variants::run(arguments),
+        Command::Equation(arguments) => cli::equation::run(arguments),
         Command::Stability(arguments) => cli::stability::run(arguments),
         Command::Answer(arguments) => cli::answer::run(arguments),
     };

@@ -16,7 +16,7 @@ fn help_and_version_are_there() {
     for word in ["reproduce", "claims", "rule", "choices", "Exit status"] {
         assert!(help.contains(word), "{word}");
     }
-    for command in ["reproduce", "claims", "rule", "choices"] {
+    for command in ["reproduce", "claims", "rule", "choices", "equation"] {
         assert!(succeeds(&[command, "--help"]).contains("--json"), "{command}");
     }
     assert_eq!(
@@ -126,6 +126,105 @@ fn the_stability_map_is_text_data_and_picture() {
     assert!(read("stability-map.svg").starts_with("<svg"));
     std::fs::remove_dir_all(folder).unwrap();
     assert!(refuses(&["stability", "--map", "--from", "1", "--to", "-1"], 2).contains("below"));
+}
+
+#[test]
+fn an_equation_is_shown_with_its_code_and_what_catches_mistakes_in_it() {
+    let text = succeeds(&["equation", "zhu2016", "56"]);
+    for part in [
+        "zhu2016 (56)  Covariance of a mixture",
+        "The paper prints this form.",
+        r"P^{0j}_{k-1|k-1}=\sum_{i=1}^{r}",
+        "P⁰ʲ = Σᵢ μᵢ∣ⱼ · [ Pⁱ + (x̂ⁱ − x̂⁰ʲ)(x̂ⁱ − x̂⁰ʲ)ᵀ ]",
+        "components[i].covariance",
+        "law of total covariance",
+        "CODE  mixture_covariance (function)  src/gaussian.rs:",
+        "let spread = &deviation * deviation.transpose();",
+        "mixed_moments_are_those_of_the_mixture (symbolic)",
+        "mixed-spread-omitted",
+        "mixing.two-modes",
+        "cargo test --test symbolic mixed_moments_are_those_of_the_mixture",
+    ] {
+        assert!(text.contains(part), "{part} in\n{text}");
+    }
+    // Formulas and code are as wide as they are; sentences and tables fit.
+    let tables = text.lines().filter(|line| line.starts_with('─'));
+    assert!(tables.into_iter().all(|line| line.chars().count() <= 100), "{text}");
+    for other in ["zhu2016 (56)", "zhu2016-56"] {
+        assert_eq!(succeeds(&["equation", other]), text);
+    }
+    let erratum = succeeds(&["equation", "zhu2016 13"]);
+    for part in [
+        "ERRATUM  zhu2016-w2 (mathematical), as printed",
+        r"w_2=\frac{2}{(n+2)^2}",
+        "proof: w_0 + 2n",
+    ] {
+        assert!(erratum.contains(part), "{part} in\n{erratum}");
+    }
+    let outside = succeeds(&["equation", "zhu2016", "turn-rate"]);
+    assert!(
+        outside.contains("OUTSIDE A STEP\n  A number of the scenario"),
+        "{outside}"
+    );
+    for (name, first, count) in [
+        ("mixed.covariance", "derbez2000 (1)", 6),
+        ("mixture_covariance", "derbez2000 (1)", 9),
+    ] {
+        let table = succeeds(&["equation", name]);
+        assert!(
+            table.contains(first) && table.contains(&format!("\n{count} equations")),
+            "{table}"
+        );
+    }
+    let all = succeeds(&["equation"]);
+    assert!(all.contains("\n190 equations"), "{all}");
+    assert!(succeeds(&["equation", "liu2017"]).contains("\n43 equations"));
+}
+
+#[test]
+fn an_equation_as_json_has_what_the_text_has() {
+    let value = json(&["equation", "zhu2016", "57", "--json"]);
+    assert_eq!(value["id"], "zhu2016-57");
+    assert_eq!(value["number"], 57);
+    assert_eq!(value["erratum"]["id"], "zhu2016-likelihood-determinant");
+    assert_eq!(value["code"][0]["name"], "log_density");
+    assert_eq!(value["code"][0]["dictionary"][0][0], "paper");
+    assert!(
+        value["code"][0]["code"]
+            .as_str()
+            .unwrap()
+            .starts_with("pub fn log_density")
+    );
+    assert_eq!(value["quantities"][0], "log_likelihood");
+    let test = &value["erratum"]["test"];
+    assert!(list(&value["tests"]).iter().any(|held| &held["name"] == test), "{test}");
+    assert!(
+        list(&value["mistakes"])
+            .iter()
+            .any(|mistake| mistake["id"] == "two-pi-outside-57")
+    );
+    assert_eq!(list(&json(&["equation", "--json"])["equations"]).len(), 190);
+    let outside = json(&["equation", "liu2017 (turn-rate)", "--json"]);
+    assert_eq!(
+        (&outside["number"], &outside["name"]),
+        (&Value::Null, &Value::from("turn-rate"))
+    );
+    assert!(outside["outside"].is_string() && list(&outside["cases"]).is_empty());
+}
+
+#[test]
+fn an_equation_that_does_not_exist_is_named_beside_those_that_do() {
+    for (asked, reason) in [
+        (
+            vec!["zhu2016", "65"],
+            "there is no equation `zhu2016 65`; the nearest names are zhu2016-",
+        ),
+        (vec!["mixture_covarianse"], "mixture_covariance"),
+        (vec!["zhu2016-w3"], "zhu2016-"),
+    ] {
+        let complaint = refuses(&[vec!["equation"], asked].concat(), 2);
+        assert!(complaint.contains(reason), "{complaint}");
+    }
 }
 
 #[test]

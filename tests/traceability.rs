@@ -1,23 +1,26 @@
 //! Goal: `spec/` and `src/` are two halves of one specification, and neither says anything that the other does not know.
 //!
-//! Method: both halves are read as they stand, `src/` as text and `spec/` as data, and held against each other in both
-//! directions: numbers, errata, evidence, parameters, constants, claims. Kind of evidence: traceability. It shows that
+//! Method: both halves are read as they stand, `src/` as items with doc comments and `spec/` as data, and held against each other in both
+//! directions: numbers and names, errata, evidence, parameters, constants, claims. Kind of evidence: traceability. It shows that
 //! everything has its place; that what stands there is right is the other files' work.
 
+use immaculate::book::doc::{Doc, backticked};
+use immaculate::book::reference::{Reference, citations, headings};
+use immaculate::book::source::{Item, items_of, source_files, tests};
 use immaculate::model::Measurement;
 use immaculate::model::motion::acceleration_input;
 use immaculate::paper::scenario::{Motion, Scenario};
 use immaculate::paper::specification::{Choices, Equation, Specification};
 use immaculate::paper::{Effort, Paper, derbez2000, liu2017, sustika2015, zhu2016};
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 // Numbers: spec → src and src → spec
 
 #[test]
-fn every_printed_number_is_realised_by_an_item_of_the_source() {
-    let realised: BTreeSet<Number> = doc_comments().iter().flat_map(|doc| headings(&doc.text)).collect();
-    let missing: Vec<_> = printed_numbers().difference(&realised).cloned().collect();
+fn every_equation_is_realised_by_an_item_of_the_source() {
+    let realised: BTreeSet<Reference> = items().iter().flat_map(|item| headings(&item.doc)).collect();
+    let missing: Vec<_> = equations().difference(&realised).cloned().collect();
     assert!(
         missing.is_empty(),
         "in spec/, and after no ` — ` of a doc comment in src/: {missing:?}"
@@ -25,34 +28,53 @@ fn every_printed_number_is_realised_by_an_item_of_the_source() {
 }
 
 #[test]
-fn every_number_named_in_the_source_is_a_row_of_the_specification() {
-    let rows = printed_numbers();
+fn every_equation_named_in_the_source_is_a_row_of_the_specification() {
+    let rows = equations();
     let mut unknown = Vec::new();
-    for file in sources() {
+    for file in source_files() {
         // Doc comments, comments and the equations that errors name.
         let text = file.text.replace("///", "").replace("//!", "");
         let named = citations(&text).into_iter();
         unknown.extend(
             named
-                .filter(|number| !rows.contains(number))
-                .map(|number| (file.path.clone(), number)),
+                .filter(|equation| !rows.contains(equation))
+                .map(|equation| (file.path.clone(), equation)),
         );
     }
     assert!(unknown.is_empty(), "in src/, and no row: {unknown:?}");
 }
 
 #[test]
+fn an_equation_is_realised_by_an_item_and_not_by_the_head_of_a_file_or_a_comment() {
+    for file in source_files() {
+        let of_items = items_of(&file).unwrap();
+        let realised: BTreeSet<Reference> = of_items.iter().flat_map(|item| headings(&item.doc)).collect();
+        for named in headings(&file.text.replace("///", "").replace("//!", "")) {
+            assert!(
+                realised.contains(&named),
+                "{}: {named} after a dash, at no item",
+                file.path
+            );
+        }
+    }
+}
+
+#[test]
 fn citations_are_read_as_lists_and_ranges() {
-    let read = |text: &str| -> Vec<(String, u32)> { citations(text) };
-    let zhu = |numbers: &[u32]| -> Vec<(String, u32)> { numbers.iter().map(|n| ("zhu2016".to_owned(), *n)).collect() };
-    assert_eq!(read("zhu2016 (54)"), zhu(&[54]));
-    assert_eq!(read("zhu2016 (2)-(4), (28) and (9)"), zhu(&[2, 3, 4, 28]));
-    assert_eq!(read("zhu2016 (2),\n    (3)."), zhu(&[2, 3]));
-    assert_eq!(read("(2), zhu2016, zhu2016 (64"), zhu(&[]));
-    let both = "— zhu2016 (55), liu2017 (12). Then zhu2016 (1) — liu2017 (3): x";
-    assert_eq!(read(both).len(), 4);
-    let realised: Vec<u32> = headings(both).iter().map(|number| number.1).collect();
-    assert_eq!(realised, [55, 12, 3], "(1) stands after no dash");
+    let read = |text: &str| -> Vec<String> { citations(text).iter().map(ToString::to_string).collect() };
+    let zhu = |labels: &[&str]| -> Vec<String> { labels.iter().map(|label| format!("zhu2016 ({label})")).collect() };
+    assert_eq!(read("zhu2016 (54)"), zhu(&["54"]));
+    assert_eq!(read("zhu2016 (2)-(4), (28) and (9)"), zhu(&["2", "3", "4", "28"]));
+    assert_eq!(read("zhu2016 (2),\n    (3)."), zhu(&["2", "3"]));
+    assert_eq!(read("zhu2016 (2), (noise-input)."), zhu(&["2", "noise-input"]));
+    assert_eq!(
+        read("(2), zhu2016, zhu2016 (64, zhu2016 (not numbered), zhu2016 ()"),
+        zhu(&[])
+    );
+    let both = "— zhu2016 (55), liu2017 (12). Then zhu2016 (1) — liu2017 (3), zhu2016 (turn-rate): x";
+    assert_eq!(read(both).len(), 5);
+    let realised: Vec<String> = headings(both).into_iter().map(|equation| equation.label).collect();
+    assert_eq!(realised, ["55", "12", "3", "turn-rate"], "(1) stands after no dash");
 }
 
 #[test]
@@ -78,14 +100,13 @@ fn numbers_run_without_gaps_and_names_stand_for_the_rest() {
 
 #[test]
 fn every_mathematical_erratum_names_a_test_that_exists() {
-    let tests = test_names();
     let mut missing = Vec::new();
     for (label, equation) in all_equations() {
         let Some(erratum) = &equation.erratum else {
             continue;
         };
         match (erratum.kind.as_str(), &erratum.test) {
-            ("mathematical", Some(test)) if tests.contains(test) => {}
+            ("mathematical", Some(test)) if tests().contains_key(test) => {}
             ("notational", None) => {}
             other => missing.push((label, other)),
         }
@@ -95,7 +116,7 @@ fn every_mathematical_erratum_names_a_test_that_exists() {
 
 #[test]
 fn every_mathematical_erratum_is_evidence_of_the_function_that_corrects_it() {
-    let evidence: BTreeSet<String> = doc_comments().iter().flat_map(|doc| evidence(&doc.text)).collect();
+    let evidence: BTreeSet<String> = items().iter().flat_map(|item| evidence(&item.doc)).collect();
     for (label, equation) in all_equations() {
         if let Some(test) = equation.erratum.as_ref().and_then(|e| e.test.as_ref()) {
             assert!(evidence.contains(test), "{label}: `{test}` in no Evidence");
@@ -105,15 +126,12 @@ fn every_mathematical_erratum_is_evidence_of_the_function_that_corrects_it() {
 
 #[test]
 fn every_test_named_as_evidence_exists() {
-    let tests = test_names();
-    let mut missing = Vec::new();
-    for doc in doc_comments() {
-        for name in evidence(&doc.text) {
-            if !tests.contains(&name) {
-                missing.push((doc.path.clone(), name));
-            }
-        }
-    }
+    let of_items = items().into_iter().map(|item| (item.path, item.doc));
+    let of_files = source_files().into_iter().map(|file| (file.path, head(file.text)));
+    let named = of_items
+        .chain(of_files)
+        .flat_map(|(path, doc)| evidence(&doc).into_iter().map(move |test| (path.clone(), test)));
+    let missing: Vec<_> = named.filter(|(_, test)| !tests().contains_key(test)).collect();
     assert!(missing.is_empty(), "no such test: {missing:#?}");
 }
 
@@ -224,18 +242,18 @@ fn every_public_equation_names_its_number_or_its_source() {
         .collect();
     let mut used = BTreeSet::new();
     let mut missing = Vec::new();
-    for file in sources().iter().filter(|file| is_equation_room(&file.path)) {
-        for function in public_functions(&file.text) {
-            let named = !headings(&function.doc).is_empty() || !citations(&first_sentence(&function.doc)).is_empty();
-            let sourced = function.doc.lines().any(|line| line.starts_with("Source:"));
-            if named || sourced {
-                continue;
-            }
-            if excused.contains(function.name.as_str()) {
-                used.insert(function.name.clone());
-            } else {
-                missing.push(format!("{}: {}", file.path, function.name));
-            }
+    let is_public_function = |item: &Item| item.is_public && ["function", "method"].contains(&item.kind);
+    let functions = items().into_iter().filter(is_public_function);
+    for function in functions.filter(|item| is_equation_room(&item.path)) {
+        let named = !headings(&function.doc).is_empty() || !citations(&first_sentence(&function.doc)).is_empty();
+        let sourced = function.doc.lines().any(|line| line.starts_with("Source:"));
+        if named || sourced {
+            continue;
+        }
+        if excused.contains(function.short_name()) {
+            used.insert(function.short_name().to_owned());
+        } else {
+            missing.push(format!("{}: {}", function.path, function.name));
         }
     }
     assert!(missing.is_empty(), "no number and no source: {missing:#?}");
@@ -263,16 +281,11 @@ const ROOMS_WITH_EXAMPLES: [&str; 10] = [
 #[test]
 fn every_public_equation_has_an_example_that_is_run() {
     let mut checked = 0;
-    for file in sources() {
-        if !ROOMS_WITH_EXAMPLES.iter().any(|room| file.path.starts_with(room)) {
-            continue;
-        }
-        for (item, doc) in documented_public_items(&file.text) {
-            let names_a_source = doc.lines().any(|line| line.starts_with("Source:"));
-            if headings(&doc).is_empty() && !names_a_source {
-                continue;
-            }
-            assert_eq!(wrong_with_the_example(&doc), None, "{}: {item}", file.path);
+    for item in items().iter().filter(|item| item.is_public) {
+        let is_checked = ROOMS_WITH_EXAMPLES.iter().any(|room| item.path.starts_with(room));
+        let names_a_source = item.doc.lines().any(|line| line.starts_with("Source:"));
+        if is_checked && (names_a_source || !headings(&item.doc).is_empty()) {
+            assert_eq!(wrong_with_the_example(&item.doc), None, "{}: {}", item.path, item.name);
             checked += 1;
         }
     }
@@ -300,7 +313,7 @@ fn an_example_is_code_that_is_run_and_asserts_and_stands_in_its_place() {
 
 #[test]
 fn the_map_names_a_room_that_realises_each_printed_number() {
-    let docs = doc_comments();
+    let items = items();
     let map = std::fs::read_to_string(root().join("src/lib.rs")).unwrap();
     let mut mapped = BTreeSet::new();
     for row in map.lines().filter(|line| line.starts_with("//! |")) {
@@ -312,35 +325,14 @@ fn the_map_names_a_room_that_realises_each_printed_number() {
             .collect();
         for number in citations(row) {
             let is_room = |path: &str| rooms.iter().any(|room| path.starts_with(&format!("src/{room}")));
-            let realises = |doc: &Doc| is_room(&doc.path) && headings(&doc.text).contains(&number);
-            assert!(docs.iter().any(realises), "{number:?} is not in {rooms:?}");
+            let realises = |item: &Item| is_room(&item.path) && headings(&item.doc).contains(&number);
+            assert!(items.iter().any(realises), "{number} is not in {rooms:?}");
             mapped.insert(number);
         }
     }
-    assert_eq!(mapped, printed_numbers(), "all of them, once or more");
-}
-
-/// The public functions, types, fields and variants of a file, by their first lines, with their doc comments.
-fn documented_public_items(text: &str) -> Vec<(String, String)> {
-    let mut items = Vec::new();
-    let mut doc = String::new();
-    for line in text.lines() {
-        if line.trim_start().starts_with("//!") || line.trim_start().starts_with("#[") {
-            continue;
-        }
-        if let Some(line) = doc_line(line) {
-            doc.push_str(line);
-            doc.push('\n');
-            continue;
-        }
-        let code = line.trim();
-        let is_variant = code.starts_with(|c: char| c.is_ascii_uppercase());
-        if !doc.is_empty() && (code.starts_with("pub ") || is_variant) {
-            items.push((code.to_owned(), std::mem::take(&mut doc)));
-        }
-        doc.clear();
-    }
-    items
+    let is_printed = |equation: &Reference| equation.label.parse::<u32>().is_ok();
+    let printed: BTreeSet<Reference> = equations().into_iter().filter(is_printed).collect();
+    assert_eq!(mapped, printed, "all of them, once or more");
 }
 
 /// Why a doc comment has no example that a reader can rely on; nothing if it has one.
@@ -671,7 +663,7 @@ fn every_claim_has_exactly_one_judgement() {
 #[test]
 fn every_name_in_the_notation_exists_in_the_source() {
     let notation = std::fs::read_to_string(root().join("spec/notation.md")).unwrap();
-    let source: String = sources().iter().map(|file| file.text.as_str()).collect();
+    let source: String = source_files().iter().map(|file| file.text).collect();
     let words: BTreeSet<&str> = source
         .split(|c: char| !(c.is_ascii_alphanumeric() || c == '_'))
         .collect();
@@ -687,27 +679,6 @@ fn every_name_in_the_notation_exists_in_the_source() {
 
 // How both halves are read
 
-/// A paper's key and a printed number.
-type Number = (String, u32);
-
-/// A file of `src/`.
-struct Source {
-    path: String,
-    text: String,
-}
-
-/// A run of doc comment lines, without the slashes.
-struct Doc {
-    path: String,
-    text: String,
-}
-
-/// A public function and its doc comment.
-struct Function {
-    name: String,
-    doc: String,
-}
-
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
@@ -717,123 +688,20 @@ fn specifications() -> Vec<&'static Specification> {
     Vec::from(Paper::ALL.map(Paper::specification))
 }
 
-fn keys() -> impl Iterator<Item = &'static str> {
-    specifications()
-        .into_iter()
-        .map(|specification| specification.paper.key.as_str())
+/// Every item of the source that has a doc comment.
+fn items() -> Vec<Item> {
+    source_files().iter().flat_map(|file| items_of(file).unwrap()).collect()
 }
 
-/// All Rust files of a folder, in the order of their paths.
-fn files(folder: &str) -> Vec<Source> {
-    let mut folders = vec![root().join(folder)];
-    let mut paths: Vec<PathBuf> = Vec::new();
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|extension| extension == "rs") {
-                paths.push(path);
-            }
-        }
-    }
-    paths.sort();
-    let read = |path: PathBuf| Source {
-        text: std::fs::read_to_string(&path).unwrap(),
-        path: path
-            .strip_prefix(root())
-            .unwrap()
-            .display()
-            .to_string()
-            .replace('\\', "/"),
-    };
-    paths.into_iter().map(read).collect()
+/// The comment at the head of a file.
+fn head(text: &str) -> String {
+    let lines = text.lines().map_while(|line| line.strip_prefix("//!"));
+    lines.fold(String::new(), |head, line| head + line.trim_start() + "\n")
 }
 
-/// The source, but for the file that reads the specification: its examples would name numbers that nothing realises.
-fn sources() -> Vec<Source> {
-    let mut sources = files("src");
-    sources.retain(|file| file.path != "src/paper/specification.rs");
-    sources
-}
-
-/// Every doc comment of the source.
-fn doc_comments() -> Vec<Doc> {
-    let mut docs = Vec::new();
-    for file in sources() {
-        let mut text = String::new();
-        for line in file.text.lines().chain([""]) {
-            if let Some(line) = doc_line(line) {
-                text.push_str(line);
-                text.push('\n');
-            } else if !text.is_empty() {
-                docs.push(Doc {
-                    path: file.path.clone(),
-                    text: std::mem::take(&mut text),
-                });
-            }
-        }
-    }
-    docs
-}
-
-/// The text of a doc comment's line.
-fn doc_line(line: &str) -> Option<&str> {
-    let line = line.trim_start();
-    let text = line.strip_prefix("///").or_else(|| line.strip_prefix("//!"))?;
-    Some(text.strip_prefix(' ').unwrap_or(text).trim_end())
-}
-
-/// All numbers in the form `key (1), (3)-(5)`.
-fn citations(text: &str) -> Vec<Number> {
-    let mut numbers = Vec::new();
-    for key in keys() {
-        for (_, rest) in text.match_indices(key).map(|(at, _)| text.split_at(at + key.len())) {
-            if let Some(rest) = rest.strip_prefix(' ') {
-                numbers.extend(number_list(rest).0.into_iter().map(|n| (key.to_owned(), n)));
-            }
-        }
-    }
-    numbers
-}
-
-/// The numbers of a list `(1), (3)-(5)` at the start of a text, and what follows it.
-fn number_list(text: &str) -> (Vec<u32>, &str) {
-    let mut numbers = Vec::new();
-    let mut rest = text;
-    loop {
-        let after_comma = if numbers.is_empty() {
-            Some(rest)
-        } else {
-            rest.strip_prefix(',').map(str::trim_start)
-        };
-        let Some((first, after)) = after_comma.and_then(number_in_parentheses) else {
-            return (numbers, rest);
-        };
-        let range = after.strip_prefix('-').and_then(number_in_parentheses);
-        let (last, after) = range.unwrap_or((first, after));
-        numbers.extend(first..=last);
-        rest = after;
-    }
-}
-
-fn number_in_parentheses(text: &str) -> Option<(u32, &str)> {
-    let (digits, rest) = text.strip_prefix('(')?.split_once(')')?;
-    Some((digits.parse().ok()?, rest))
-}
-
-/// The numbers that a doc comment says it realises: those of the lists after a dash, ` — zhu2016 (55), liu2017 (12)`.
-fn headings(doc: &str) -> Vec<Number> {
-    let mut numbers = Vec::new();
-    for (_, after) in doc.match_indices('—').map(|(at, dash)| doc.split_at(at + dash.len())) {
-        let mut rest = after.trim_start();
-        while let Some(key) = keys().find(|key| rest.starts_with(key)) {
-            let (list, after) = number_list(rest[key.len()..].trim_start());
-            numbers.extend(list.into_iter().map(|n| (key.to_owned(), n)));
-            rest = after.trim_start_matches(',').trim_start();
-        }
-    }
-    numbers
+/// The tests that a doc comment names.
+fn evidence(doc: &str) -> Vec<String> {
+    Doc::read(doc).evidence().into_iter().map(|named| named.test).collect()
 }
 
 fn first_sentence(doc: &str) -> String {
@@ -841,37 +709,6 @@ fn first_sentence(doc: &str) -> String {
         .take_while(|line| !line.is_empty())
         .collect::<Vec<_>>()
         .join(" ")
-}
-
-/// The tests that a doc comment names after `Evidence:`, to the end of the paragraph. Links to items are not tests.
-fn evidence(doc: &str) -> Vec<String> {
-    let lines = doc.lines().skip_while(|line| !line.starts_with("Evidence:"));
-    let paragraph: Vec<&str> = lines.take_while(|line| !line.is_empty()).collect();
-    backticked(&paragraph.join(" "))
-}
-
-/// What stands between backticks, but for links.
-fn backticked(text: &str) -> Vec<String> {
-    let parts: Vec<&str> = text.split('`').collect();
-    let pairs = parts.chunks_exact(2).filter(|pair| !pair[0].ends_with('['));
-    pairs.map(|pair| pair[1].to_owned()).collect()
-}
-
-/// The names of all tests.
-fn test_names() -> BTreeSet<String> {
-    let mut names = BTreeSet::new();
-    for file in files("tests") {
-        let mut is_test = false;
-        for line in file.text.lines().map(str::trim) {
-            is_test |= line == "#[test]";
-            if let Some(rest) = line.strip_prefix("fn ").filter(|_| is_test) {
-                let end = rest.find(['(', '<']).unwrap_or(rest.len());
-                names.insert(rest[..end].to_owned());
-                is_test = false;
-            }
-        }
-    }
-    names
 }
 
 /// The folders and files that hold equations.
@@ -889,39 +726,17 @@ fn is_equation_room(path: &str) -> bool {
     ROOMS.iter().any(|room| path.starts_with(room))
 }
 
-/// The public functions of a file with their doc comments; attributes may stand between the two.
-fn public_functions(text: &str) -> Vec<Function> {
-    let mut functions = Vec::new();
-    let mut doc = String::new();
-    let mut open_brackets = 0;
-    for line in text.lines() {
-        let code = line.trim_start();
-        if let Some(line) = doc_line(line) {
-            doc.push_str(line);
-            doc.push('\n');
-        } else if code.starts_with("#[") || open_brackets > 0 {
-            open_brackets += code.matches('[').count();
-            open_brackets -= code.matches(']').count();
-        } else {
-            if let Some(rest) = code.strip_prefix("pub fn ") {
-                let end = rest.find(['(', '<']).unwrap_or(rest.len());
-                functions.push(Function {
-                    name: rest[..end].to_owned(),
-                    doc: doc.clone(),
-                });
-            }
-            doc.clear();
-        }
-    }
-    functions
-}
-
-fn printed_numbers() -> BTreeSet<Number> {
-    let of = |specification: &'static Specification| {
-        let numbers = specification.equations.iter().filter_map(|e| e.number);
-        numbers.map(|number| (specification.paper.key.clone(), number))
+/// All rows of the specification, with a number or a name.
+fn equations() -> BTreeSet<Reference> {
+    let of = |paper: Paper| {
+        let specification = paper.specification();
+        let equations = specification.equations.iter().chain(&specification.unnumbered);
+        equations.map(move |equation| match equation.number {
+            Some(number) => Reference::new(paper, number),
+            None => Reference::new(paper, equation.name.as_deref().unwrap_or_default()),
+        })
     };
-    specifications().into_iter().flat_map(of).collect()
+    Paper::ALL.into_iter().flat_map(of).collect()
 }
 
 /// Every equation with a label for messages.

@@ -33,7 +33,7 @@ pub enum PartKind {
 pub struct Part {
     /// What it is.
     pub kind: PartKind,
-    /// Its markdown; of a formula the lines alone.
+    /// Its markdown without the label, but for "Why:"; of a formula the lines alone.
     pub text: String,
 }
 
@@ -90,7 +90,12 @@ impl Doc {
             if let Some((word, kind)) = label {
                 // The code of an example belongs to its sentence.
                 under = (word.starts_with('#') || *kind == PartKind::Example).then_some(*kind);
-                let text = block[word.len()..].trim();
+                // "Why:" is the beginning of a sentence that others may follow without it.
+                let text = if *kind == PartKind::Derivation {
+                    block.as_str()
+                } else {
+                    block[word.len()..].trim()
+                };
                 if !text.is_empty() {
                     parts.push(Part {
                         kind: *kind,
@@ -134,7 +139,7 @@ impl Doc {
         self.of(PartKind::Evidence).flat_map(named_tests).collect()
     }
 
-    /// The items whose evidence this item has too: `as`, then a link to `point`.
+    /// The items whose evidence this item has too: those that its evidence links to.
     pub fn evidence_of(&self) -> Vec<String> {
         let linked = self.of(PartKind::Evidence).flat_map(|text| {
             let after = text.split("[`").skip(1);

@@ -16,7 +16,7 @@ pub struct Unknown {
 }
 
 /// The equations of a name, which may be written in several words: `zhu2016 56`, `zhu2016 (56)`, `zhu2016-56`, an unnumbered one's name,
-/// a paper, an erratum, a quantity, a function. In reading order.
+/// a paper, an erratum, a quantity, a function; a number alone is one of every paper. In reading order.
 ///
 /// # Errors
 ///
@@ -40,8 +40,7 @@ pub fn find(asked: &str) -> Result<Vec<&'static Entry>, Unknown> {
     ];
     for is_asked in is_asked {
         let found: Vec<&Entry> = entries().iter().filter(|entry| is_asked(entry)).collect();
-        // A bare number is one of every paper.
-        if !found.is_empty() && name.parse::<u32>().is_err() {
+        if !found.is_empty() {
             return Ok(found);
         }
     }
@@ -72,7 +71,6 @@ fn nearest(name: &str) -> Vec<String> {
     names.sort();
     names.dedup();
     let asked = anchor(name);
-    // Likeness in tenths of thousands, so that it can be sorted; the same likeness by name.
     let likeness = |other: &String| strsim::jaro_winkler(&asked, other).max(strsim::jaro_winkler(name, other));
     names.sort_by(|a, b| likeness(b).total_cmp(&likeness(a)));
     names.truncate(SHOWN);

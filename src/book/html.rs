@@ -3,7 +3,7 @@
 //! After this file the reader knows what a section holds, in this order: what the equation says, its formula, what is printed instead, why
 //! it is so and where the code is, the tests that hold it, and the mistakes that are made in it with the cases that catch them.
 //!
-//! An item that realises several equations stands in the section of the first; the others lead there.
+//! An item that realises several equations of a paper stands in the section of the first; the others lead there.
 
 use super::doc::PartKind;
 use super::markup::{formula, paragraphs, sentence, table};
@@ -36,7 +36,7 @@ fn section(entry: &Entry) -> Markup {
     let equation = entry.equation;
     html! {
         section class="equation" id=(entry.anchor()) {
-            h4 { (entry.reference) }
+            h4 { (entry.reference) ": " (entry.title()) }
             p class="meaning" { (equation.meaning) }
             div class="formula" { (formula(&equation.latex)) }
             p class={ "status " (equation.status) } { (status(&equation.status)) }
@@ -77,18 +77,23 @@ fn realised(realisation: &Realisation, entry: &Entry) -> Markup {
     let item = &realisation.item;
     let anchor = item.anchor();
     let at = || html! { code { (item.name) } ", " (item.path) ":" (item.line) };
-    let first = first_of(realisation);
+    let first = first_of(realisation, entry.paper);
     if let Some(first) = first.filter(|first| first.reference != entry.reference) {
         return html! {
             p class="elsewhere" {
-                a href={ "#" (anchor) } { (at()) } ": " (sentence(&realisation.doc.title, item))
+                (at()) ": " (sentence(&realisation.doc.title, item))
                 ", shown at " a href={ "#" (first.anchor()) } { (first.reference) } "."
             }
         };
     }
     let doc = &realisation.doc;
+    // The index leads to the first place in the book.
+    let is_first = Paper::ALL
+        .into_iter()
+        .find_map(|paper| first_of(realisation, paper))
+        .is_some_and(|first| first.reference == entry.reference);
     html! {
-        div class="code" id=(anchor) {
+        div class="code" id=[is_first.then_some(anchor)] {
             h5 { (sentence(&doc.title, item)) }
             @if !doc.remark.is_empty() { (paragraphs(&doc.remark, item)) }
             @for part in &doc.parts {
@@ -115,11 +120,10 @@ fn realised(realisation: &Realisation, entry: &Entry) -> Markup {
     }
 }
 
-/// The first equation of the book that an item realises.
-fn first_of(realisation: &Realisation) -> Option<&'static Entry> {
-    entries()
-        .iter()
-        .find(|entry| entry.realisations.iter().any(|other| other.item == realisation.item))
+/// The first equation of a paper that an item realises.
+fn first_of(realisation: &Realisation, paper: Paper) -> Option<&'static Entry> {
+    let realises = |entry: &&Entry| entry.realisations.iter().any(|other| other.item == realisation.item);
+    entries_of(paper).find(realises)
 }
 
 /// The tests.

@@ -49,9 +49,59 @@ pub fn sentence(markdown: &str, of: &Item) -> Markup {
     rendered(events(markdown, of).into_iter().filter(|event| !is_paragraph(event)))
 }
 
+/// The cells of a table of a doc comment, row by row, as text.
+pub fn text_rows(markdown: &str, of: &Item) -> Vec<Vec<String>> {
+    let rows = cells(markdown, of).into_iter();
+    rows.map(|row| row.into_iter().map(|cell| text_of(cell.into_iter())).collect())
+        .collect()
+}
+
+/// A paragraph of a doc comment as text.
+pub fn plain(markdown: &str, of: &Item) -> String {
+    text_of(events(markdown, of).into_iter())
+}
+
+/// The words, without what sets them.
+fn text_of<'a>(events: impl Iterator<Item = Event<'a>>) -> String {
+    let mut text = String::new();
+    for event in events {
+        match event {
+            Event::Text(words) | Event::Code(words) => text.push_str(&words),
+            Event::SoftBreak | Event::HardBreak => text.push(' '),
+            _ => {}
+        }
+    }
+    text
+}
+
 /// A table of a doc comment, with what its columns and rows are.
 pub fn table(markdown: &str, of: &Item, caption: &str) -> Markup {
-    let mut rows: Vec<Vec<Vec<Event>>> = Vec::new();
+    let mut rows = cells(markdown, of).into_iter();
+    let header = rows.next().unwrap_or_default();
+    html! {
+        table class="dictionary" {
+            caption { (caption) }
+            thead { tr { @for cell in header { th scope="col" { (rendered(cell.into_iter())) } } } }
+            tbody {
+                @for row in rows {
+                    tr {
+                        @for (index, cell) in row.into_iter().enumerate() {
+                            @let cell = rendered(cell.into_iter());
+                            @if index == 0 { th scope="row" { (cell) } } @else { td { (cell) } }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A row of a table: what stands in each of its cells.
+type Row<'a> = Vec<Vec<Event<'a>>>;
+
+/// The rows of the tables of a doc comment; the first is the header.
+fn cells<'a>(markdown: &'a str, of: &Item) -> Vec<Row<'a>> {
+    let mut rows: Vec<Row> = Vec::new();
     for event in events(markdown, of) {
         match event {
             Event::Start(Tag::TableHead | Tag::TableRow) => rows.push(Vec::new()),
@@ -69,25 +119,7 @@ pub fn table(markdown: &str, of: &Item, caption: &str) -> Markup {
             }
         }
     }
-    let mut rows = rows
-        .into_iter()
-        .map(|row| row.into_iter().map(|cell| rendered(cell.into_iter())));
-    let header: Vec<Markup> = rows.next().into_iter().flatten().collect();
-    html! {
-        table class="dictionary" {
-            caption { (caption) }
-            thead { tr { @for cell in &header { th scope="col" { (cell) } } } }
-            tbody {
-                @for row in rows {
-                    tr {
-                        @for (index, cell) in row.enumerate() {
-                            @if index == 0 { th scope="row" { (cell) } } @else { td { (cell) } }
-                        }
-                    }
-                }
-            }
-        }
-    }
+    rows
 }
 
 fn rendered<'a>(events: impl Iterator<Item = Event<'a>>) -> Markup {

@@ -27,7 +27,8 @@ use crate::imm::Quantity;
 use crate::oracle::variant::{Applies, Kind, Variant, catalogue};
 use crate::paper::Paper;
 use crate::paper::specification::{Equation, Specification};
-use doc::{Doc, Named, PartKind};
+use doc::{Doc, Named};
+use markup::plain;
 use reference::Reference;
 use source::{Item, Test};
 use std::collections::BTreeMap;
@@ -91,11 +92,13 @@ impl Entry {
         cases
     }
 
-    /// What it is called: the title of the first item that realises it, or its own name.
-    pub fn title(&self) -> &str {
-        self.realisations
-            .first()
-            .map_or(&self.reference.label, |first| &first.doc.title)
+    /// What it is called, in plain words: the title of the first item that realises it, or its own name.
+    pub fn title(&self) -> String {
+        let first = self.realisations.first();
+        first.map_or_else(
+            || self.reference.label.clone(),
+            |first| plain(&first.doc.title, &first.item),
+        )
     }
 }
 
@@ -118,11 +121,11 @@ pub fn entries_of(paper: Paper) -> impl Iterator<Item = &'static Entry> {
 /// The items of the source that realise equations, in the order of the files.
 pub fn realisations() -> &'static [Realisation] {
     static REALISATIONS: LazyLock<Vec<Realisation>> = LazyLock::new(|| {
-        let files = realising_files().into_iter();
-        // Only these are parsed: most files realise nothing.
-        let items = files.filter(|file| !reference::headings(file.text).is_empty());
+        // Only files with such a comment are parsed: most realise nothing.
+        let files = source::source_files().into_iter();
+        let files = files.filter(|file| !reference::headings(&file.text.replace("///", "")).is_empty());
         // The files are those that were compiled.
-        let items = items.flat_map(|file| source::items_of(&file).unwrap_or_default());
+        let items = files.flat_map(|file| source::items_of(&file).unwrap_or_default());
         let read = items.map(|item| Realisation {
             doc: Doc::read(&item.doc),
             item,
@@ -131,13 +134,6 @@ pub fn realisations() -> &'static [Realisation] {
             .collect()
     });
     &REALISATIONS
-}
-
-/// The files whose comments speak of equations that they realise: those that read such comments have examples of them instead.
-pub fn realising_files() -> Vec<source::File> {
-    let mut files = source::source_files();
-    files.retain(|file| file.path != "src/paper/specification.rs" && !file.path.starts_with("src/book/"));
-    files
 }
 
 fn rows(paper: Paper) -> impl Iterator<Item = &'static Equation> {
@@ -236,13 +232,4 @@ fn mistakes(specification: &Specification, equation: &Equation) -> Vec<&'static 
     });
     let is_named = |variant: &&Variant| equation.mistakes.is_empty() || equation.mistakes.contains(&variant.id);
     made.filter(is_named).collect()
-}
-
-/// The formulas of an item: those in its doc comment, or what its first sentence says after the numbers.
-pub fn formulas(doc: &Doc) -> Vec<&str> {
-    let mut formulas: Vec<&str> = doc.of(PartKind::Formula).collect();
-    if formulas.is_empty() && !doc.remark.is_empty() {
-        formulas.push(&doc.remark);
-    }
-    formulas
 }

@@ -5,6 +5,7 @@
 pub mod answer;
 pub mod cases;
 pub mod check;
+pub mod equation;
 pub mod report;
 pub mod reproduce;
 pub mod stability;

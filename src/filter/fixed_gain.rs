@@ -6,7 +6,7 @@
 
 use nalgebra::SMatrix;
 
-/// Gain and innovation covariance of one mode, both constant.
+/// Gain and innovation covariance of one mode, both constant — derbez2000 (fixed-gain-update), (fixed-gain-likelihood).
 ///
 /// Source: derbez2000, section 3, not numbered.
 ///

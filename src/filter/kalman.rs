@@ -27,6 +27,8 @@ use nalgebra::{SMatrix, SVector};
 ///
 /// assert_eq!(predicted_mean(&matrix![2.0], &vector![5.0]), vector![10.0]); // 2 · 5
 /// ```
+///
+/// Evidence: `a_linear_filter_with_any_rule_of_degree_two_is_the_kalman_filter` (symbolic).
 pub fn predicted_mean<T: Field, const N: usize>(transition: &SMatrix<T, N, N>, mean: &SVector<T, N>) -> SVector<T, N> {
     transition * mean
 }
@@ -65,6 +67,8 @@ pub fn predicted_covariance<T: Field, const N: usize>(
 ///
 /// assert_eq!(cross_covariance(&matrix![25.0], &matrix![2.0]), matrix![50.0]); // 25 · 2
 /// ```
+///
+/// Evidence: `the_kalman_update_is_conditioning_of_a_gaussian` (symbolic).
 pub fn cross_covariance<T: Field, const N: usize, const M: usize>(
     covariance: &SMatrix<T, N, N>,
     h: &SMatrix<T, M, N>,
@@ -84,6 +88,8 @@ pub fn cross_covariance<T: Field, const N: usize, const M: usize>(
 ///
 /// assert_eq!(innovation_covariance(&matrix![2.0], &matrix![25.0], &matrix![100.0]), matrix![200.0]); // 2 · 25 · 2 + 100
 /// ```
+///
+/// Evidence: `the_kalman_update_is_conditioning_of_a_gaussian` (symbolic).
 pub fn innovation_covariance<T: Field, const N: usize, const M: usize>(
     h: &SMatrix<T, M, N>,
     covariance: &SMatrix<T, N, N>,

@@ -16,7 +16,7 @@ use crate::filter::fixed_gain::FixedGain;
 use crate::number::Real;
 
 impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
-    /// Filters with fixed gains that start from mixed estimates.
+    /// Filters with fixed gains that start from mixed estimates — derbez2000 (fixed-gain-update), (fixed-gain-likelihood).
     ///
     /// Source: derbez2000, section 3, not numbered.
     ///
@@ -69,7 +69,8 @@ impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
         }
     }
 
-    /// Filters with fixed gains that each go on from their own estimate: the same update read as it is printed, without mixed states.
+    /// Filters with fixed gains that each go on from their own estimate: the same update read as it is printed, without mixed states —
+    /// derbez2000 (fixed-gain-update).
     ///
     /// Source: derbez2000, section 3, not numbered.
     ///

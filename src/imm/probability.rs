@@ -191,7 +191,7 @@ pub fn log_evidence<T: Real>(log_likelihoods: &[T], predicted_mode_probabilities
     greatest(log_likelihoods, predicted_mode_probabilities) + evidence.ln()
 }
 
-/// Mode probability — sustika2015 (11), zhu2016 (58), liu2017 (22).
+/// Mode probability — sustika2015 (11), zhu2016 (58), liu2017 (22), derbez2000 (mode-probability).
 ///
 /// ```text
 /// μⱼ = Λⱼ cⱼ / C

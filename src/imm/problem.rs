@@ -37,6 +37,8 @@ pub struct Problem<T, const N: usize, const M: usize> {
     /// let noise = matrix![100.0, 0.0; 0.0, 0.25]; // diag(10², (1/2)²)
     /// assert_eq!(noise.map(|variance: f64| Real::sqrt(&variance)), matrix![10.0, 0.0; 0.0, 0.5]);
     /// ```
+    ///
+    /// Evidence: `the_constants_of_sustika2015_are_the_printed_ones` (traceability).
     pub measurement_noise: SMatrix<T, M, M>,
     /// The rule of a filter with points; none for the Kalman filter.
     pub rule: Option<Rule<T, N>>,

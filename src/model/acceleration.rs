@@ -120,7 +120,8 @@ pub fn constant_acceleration<T: Field>(interval: &T) -> Matrix3<T> {
     embedded_constant_velocity(interval) + acceleration_part(interval)
 }
 
-/// How an acceleration that is constant over a step enters the state of constant acceleration: G_a = [t²/2, t, 1]ᵀ.
+/// How an acceleration that is constant over a step enters the state of constant acceleration: G_a = [t²/2, t, 1]ᵀ — derbez2000
+/// (noise-inputs), (constant-acceleration-input).
 ///
 /// Times a it is the paper's b, what the constant velocity model does not know of a target with the acceleration a: ΔF xₙ = b.
 ///
@@ -137,12 +138,14 @@ pub fn constant_acceleration<T: Field>(interval: &T) -> Matrix3<T> {
 /// ```
 ///
 /// Errata: section 3 calls the noise inputs of "the CA/CV plant" G_v and G_a "respectively"; it is the other order.
+///
+/// Evidence: `the_alpha_beta_gamma_gain_solves_the_riccati_equation` (symbolic).
 pub fn acceleration_response<T: Field>(interval: &T) -> Vector3<T> {
     let t = || interval.clone();
     Vector3::new(t() * t() / T::integer(2), t(), T::one())
 }
 
-/// How an acceleration that is constant over a step enters the state of constant velocity: G_v = [t²/2, t, 0]ᵀ.
+/// How an acceleration that is constant over a step enters the state of constant velocity: G_v = [t²/2, t, 0]ᵀ — derbez2000 (noise-inputs).
 ///
 /// Source: derbez2000, section 3, not numbered; printed for a state of two, and embedded here as F is in (5).
 ///
@@ -154,12 +157,14 @@ pub fn acceleration_response<T: Field>(interval: &T) -> Vector3<T> {
 ///
 /// assert_eq!(embedded_velocity_response(&2.0), vector![2.0, 2.0, 0.0]); // 2²/2, 2
 /// ```
+///
+/// Evidence: `the_alpha_beta_gain_solves_the_riccati_equation` (symbolic).
 pub fn embedded_velocity_response<T: Field>(interval: &T) -> Vector3<T> {
     let t = || interval.clone();
     Vector3::new(t() * t() / T::integer(2), t(), T::zero())
 }
 
-/// Noise covariance of rank one: G q Gᵀ.
+/// Noise covariance of rank one: G q Gᵀ — derbez2000 (noise-inputs).
 ///
 /// | paper    | here       | unit    | meaning                                                             |
 /// |----------|------------|---------|---------------------------------------------------------------------|
@@ -179,6 +184,8 @@ pub fn embedded_velocity_response<T: Field>(interval: &T) -> Vector3<T> {
 /// let noise = response_noise(&acceleration_response(&2.0), &3.0);
 /// assert_eq!(noise, matrix![12.0, 12.0, 6.0; 12.0, 12.0, 6.0; 6.0, 6.0, 3.0]);
 /// ```
+///
+/// Evidence: as [`embedded_velocity_response`] and [`acceleration_response`].
 pub fn response_noise<T: Field>(response: &Vector3<T>, variance: &T) -> Matrix3<T> {
     (response * response.transpose()) * variance.clone()
 }

@@ -155,7 +155,7 @@ impl<T: Real, const N: usize, const M: usize> Measurement<T, N, M> {
         }
     }
 
-    /// The difference of two measurements, its angles wrapped to (−π, π].
+    /// The difference of two measurements, its angles wrapped to (−π, π] — liu2017 (residual).
     ///
     /// Source: an angle's difference is an angle; the papers subtract without saying so, and liu2017's target is never near ±π.
     ///

@@ -48,7 +48,7 @@ pub struct Mode<T, const N: usize> {
 
 impl<T: Field, const N: usize> Mode<T, N> {
     /// Whether the motion has no such entry of the state: it sets it to zero, without noise, and knows it exactly ever after. That is how
-    /// models of unequal dimensions share one state, constant velocity and constant acceleration for instance.
+    /// models of unequal dimensions share one state, constant velocity and constant acceleration for instance — sustika2015 (padding).
     ///
     /// Source: derbez2000 (5), where the last row of F is zero.
     ///
@@ -65,13 +65,16 @@ impl<T: Field, const N: usize> Mode<T, N> {
     /// };
     /// assert_eq!([0, 1, 2].map(|entry| mode.lacks(entry)), [false, false, true]);
     /// ```
+    ///
+    /// Evidence: `constant_velocity_among_six_components_has_the_unscented_moments_of_four_when_kappa_is_three_minus_n`,
+    /// `an_entry_without_variance_has_a_row_of_zeros_in_the_square_root` (exact).
     pub fn lacks(&self, entry: usize) -> bool {
         let is_zero = |matrix: &SMatrix<T, N, N>| matrix.row(entry).iter().all(T::is_zero);
         is_zero(&self.transition) && is_zero(&self.noise)
     }
 }
 
-/// Transition matrix of constant velocity — liu2017 (25), (26).
+/// Transition matrix of constant velocity — liu2017 (25), (26), zhu2016 (constant-velocity).
 ///
 /// ```text
 /// F = diag( [1 T; 0 1], [1 T; 0 1] )
@@ -278,7 +281,7 @@ pub fn turn_noise<T: Field>(
     )
 }
 
-/// How a piecewise constant acceleration enters the state: zhu2016's process noise weight matrix G.
+/// How a piecewise constant acceleration enters the state: zhu2016's process noise weight matrix G — zhu2016 (noise-input).
 ///
 /// ```text
 /// G = [T²/2 0; T 0; 0 T²/2; 0 T]
@@ -295,6 +298,8 @@ pub fn turn_noise<T: Field>(
 /// // 3 · 2²/2, 3 · 2, −1 · 2²/2, −1 · 2
 /// assert_eq!(acceleration_input(&2.0) * vector![3.0, -1.0], vector![6.0, 6.0, -2.0, -2.0]);
 /// ```
+///
+/// Evidence: `a_piecewise_constant_acceleration_enters_through_its_integral` (symbolic).
 #[rustfmt::skip]
 pub fn acceleration_input<T: Field>(interval: &T) -> Matrix4x2<T> {
     let t = || interval.clone();
@@ -308,7 +313,8 @@ pub fn acceleration_input<T: Field>(interval: &T) -> Matrix4x2<T> {
     )
 }
 
-/// Noise covariance of a piecewise constant acceleration of variance `variance` per axis: Q = G q Gᵀ, of rank two.
+/// Noise covariance of a piecewise constant acceleration of variance `variance` per axis: Q = G q Gᵀ, of rank two —
+/// zhu2016 (process-noise).
 ///
 /// Source: zhu2016, section 4, not numbered: "process noise Q ~ N(0, q), q = diag(10, 10)", "process noise weight matrix G".
 /// `variance` is in (m/s²)².
@@ -324,6 +330,8 @@ pub fn acceleration_input<T: Field>(interval: &T) -> Matrix4x2<T> {
 /// // In one second they are ¾, 3/2 and 3.
 /// assert_eq!(acceleration_noise(&3.0, &1.0).fixed_view::<2, 2>(0, 0), matrix![0.75, 1.5; 1.5, 3.0]);
 /// ```
+///
+/// Evidence: `a_piecewise_constant_acceleration_enters_through_its_integral` (symbolic).
 pub fn acceleration_noise<T: Field>(variance: &T, interval: &T) -> Matrix4<T> {
     let g = acceleration_input(interval);
     (&g * g.transpose()) * variance.clone()

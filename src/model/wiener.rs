@@ -47,7 +47,7 @@ pub fn in_the_plane<T: Field>(axis: &Matrix3<T>) -> Matrix6<T> {
     })
 }
 
-/// Transition matrix of constant velocity in the plane, embedded in six dimensions — sustika2015 (1).
+/// Transition matrix of constant velocity in the plane, embedded in six dimensions — sustika2015 (1), (constant-velocity).
 ///
 /// ```text
 ///     ⎡ 1 T 0 ⎤
@@ -80,7 +80,7 @@ pub fn constant_velocity_in_the_plane<T: Field>(interval: &T) -> Matrix6<T> {
     in_the_plane(&acceleration::embedded_constant_velocity(interval))
 }
 
-/// Transition matrix of constant acceleration in the plane — sustika2015 (1).
+/// Transition matrix of constant acceleration in the plane — sustika2015 (1), (constant-acceleration).
 ///
 /// ```text
 ///     ⎡ 1 T T²/2 ⎤
@@ -112,7 +112,7 @@ pub fn constant_acceleration_in_the_plane<T: Field>(interval: &T) -> Matrix6<T> 
     in_the_plane(&acceleration::constant_acceleration(interval))
 }
 
-/// Noise covariance of constant velocity in the plane, white noise on the accelerations — sustika2015 (1).
+/// Noise covariance of constant velocity in the plane, white noise on the accelerations — sustika2015 (1), (constant-velocity).
 ///
 /// ```text
 ///       ⎡ T³/3 T²/2 0 ⎤
@@ -153,7 +153,8 @@ pub fn velocity_noise_in_the_plane<T: Field>(density: &T, interval: &T) -> Matri
     in_the_plane(&axis)
 }
 
-/// Noise covariance of constant acceleration in the plane, white noise on the rates of the accelerations — sustika2015 (1).
+/// Noise covariance of constant acceleration in the plane, white noise on the rates of the accelerations —
+/// sustika2015 (1), (constant-acceleration).
 ///
 /// ```text
 ///       ⎡ T⁵/20 T⁴/8 T³/6 ⎤

@@ -19,6 +19,7 @@ pub mod check_json;
 pub mod claims;
 pub mod conversion;
 pub mod divergence;
+pub mod equation;
 pub mod figure;
 pub mod fit_error;
 pub mod long_term;

@@ -4,7 +4,7 @@
 //! ∫ g(x) N(x; 0, I) dx  ≈  Σₛ wₛ g(ξₛ)
 //! ```
 //!
-//! liu2017 writes the integral with another weight and splits it into a radius and a direction, x = r s with sᵀs = 1 —
+//! liu2017 writes the integral with another weight and splits it into a radius and a direction, x = r s with sᵀs = 1:
 //! liu2017 (2), (3). It is the same integral in the variable √2 x, which makes a radius √(n/2 + 1) there a √(n + 2) here:
 //!
 //! ```text

@@ -65,9 +65,15 @@ pub struct Exactness {
     pub failure: Option<WrongMoment>,
 }
 
-/// The moment of a monomial under the standard Gaussian: Π (eᵢ − 1)!!, or zero when an exponent is odd.
+/// The moment of a monomial under the standard Gaussian: Π (eᵢ − 1)!!, or zero when an exponent is odd — liu2017 (2), (gaussian-integral),
+/// (change-of-variables).
 ///
-/// Source: E x^(2k) = 1·3·5⋯(2k − 1) for a standard Gaussian coordinate, and the coordinates are independent.
+/// ```text
+/// ∫ f(x) N(x; 0, I) dx = π^(−n/2) ∫ f(√2 y) e^(−yᵀy) dy,   of x₁^e₁ ⋯ xₙ^eₙ: Π (eᵢ − 1)!!
+/// ```
+///
+/// Why: E x^(2k) = 1·3·5⋯(2k − 1) for a standard Gaussian coordinate, and the coordinates are independent. liu2017 integrates against
+/// e^(−xᵀx), which is the same in the variable x/√2.
 ///
 /// Example: E x⁴ = 3 and E x² = 1; odd ones are zero.
 ///
@@ -77,6 +83,8 @@ pub struct Exactness {
 /// assert_eq!(gaussian_moment(&[4, 2]).to_string(), "3"); // E x⁴ · E x² = 3 · 1
 /// assert_eq!(gaussian_moment(&[1, 2]).to_string(), "0");
 /// ```
+///
+/// Evidence: `harmonic_sums_and_moments_find_the_same_degree`, `a_rule_with_one_wrong_point_or_weight_loses_its_degree` (exact).
 pub fn gaussian_moment(exponents: &[usize]) -> Rational {
     let mut product = Rational::one();
     for &exponent in exponents {

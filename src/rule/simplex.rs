@@ -258,7 +258,7 @@ pub fn sphere_edge_weight<T: Field>(n: &T) -> T {
         / (n.clone() * n_plus_1.clone() * n_plus_1 * (n.clone() + T::integer(2)))
 }
 
-/// The radial rule of degree five, for the weight r^(n−1) e^(−r²) — liu2017 (8), (9), (10).
+/// The radial rule of degree five, for the weight r^(n−1) e^(−r²) — liu2017 (8), (9), (10), (surface-area).
 ///
 /// ```text
 /// r₁ = 0,   r₂² = n/2 + 1,   ω₁ = Γ(n/2)/(n+2),   ω₂ = n Γ(n/2)/(2(n+2))

@@ -91,7 +91,7 @@ pub fn lambda<T: Field>(n: &T, alpha: &T, kappa: &T) -> T {
     alpha.clone() * alpha.clone() * (n.clone() + kappa.clone()) - n.clone()
 }
 
-/// The unscented rule — sustika2015 (27)-(29), for zero mean and unit covariance.
+/// The unscented rule — sustika2015 (27)-(29), (sigma-point-weights), for zero mean and unit covariance.
 ///
 /// ```text
 /// λ = α²(n + κ) − n

@@ -235,10 +235,12 @@ fn reindexed_spread(mixing: &[Vec<f64>], errors: &[Matrix3<f64>; 2], i: usize, j
     spread_term(&mixing[j][1 - i], &errors[1 - i])
 }
 
-/// Steps 2, 3, 4 and 6 as printed.
+/// Steps 2, 3, 4 and 6 as printed — derbez2000 (algorithm-step-2), (algorithm-step-4).
 ///
 /// Source: derbez2000, section 2.2, algorithm. "The new covariances" of step 5 are read as P⁰ʲ, and Pⁱ of step 3 as the ones of (2), with
 /// step 2's for constant acceleration.
+///
+/// Evidence: `the_printed_weight_lets_the_algorithm_run_away` (property), `the_figures_show_where_the_prediction_is_right` (statistics).
 fn printed_round(setting: &Setting, round: &Round, spread: Spread) -> Option<Round> {
     let h = position_matrix::<f64>();
     let (motions, r) = (setting.motions(), setting.measurement_variance);
@@ -306,7 +308,7 @@ fn corrected_round(setting: &Setting, round: &Round) -> Option<Round> {
     })
 }
 
-/// ln E N(ν; 0, s) for an innovation ν ~ N(bias, variance): ln N(bias; 0, s + variance).
+/// ln E N(ν; 0, s) for an innovation ν ~ N(bias, variance): ln N(bias; 0, s + variance) — derbez2000 (algorithm-step-4).
 ///
 /// Source: derbez2000, step 4, which has s for both; ∫ N(ν; 0, s) N(ν; b, v) dν = N(b; 0, s + v).
 ///
@@ -318,6 +320,8 @@ fn corrected_round(setting: &Setting, round: &Round) -> Option<Round> {
 /// let exact = -((8.0 * std::f64::consts::PI).ln() + 1.0) / 2.0;
 /// assert!((expected_log_likelihood(2.0, 1.0, 3.0) - exact).abs() < 1e-15); // a few units of the last place
 /// ```
+///
+/// Evidence: `the_corrected_algorithm_predicts_the_simulated_error` (statistics).
 pub fn expected_log_likelihood(bias: f64, believed: f64, variance: f64) -> f64 {
     log_density(&Vector1::new(bias), &ldl(&Matrix1::new(believed + variance)))
 }
@@ -329,7 +333,8 @@ fn normalised(predicted: &[f64; 2], log_likelihoods: &[f64; 2]) -> [f64; 2] {
     weights.map(|weight| weight / (weights[0] + weights[1]))
 }
 
-/// Mean and covariance of the errors (e⁰, e¹) of both filters, updated, with constant gains and constant mixing probabilities.
+/// Mean and covariance of the errors (e⁰, e¹) of both filters, updated, with constant gains and constant mixing probabilities —
+/// derbez2000 (algorithm-step-2).
 ///
 /// ```text
 /// e = A (U ⊗ I) e + b − K v,   A = diag(A₀, A₁),   b = (b₊, 0),   K = (K₀, K₁)
@@ -348,6 +353,8 @@ fn normalised(predicted: &[f64; 2], log_likelihoods: &[f64; 2]) -> [f64; 2] {
 /// let errors = JointErrors::new(&setting, &gains, &[vec![1.0, 0.0], vec![0.0, 1.0]]).unwrap();
 /// assert!((errors.moment(0, 0)[(0, 0)] - 11.0 / 12.0).abs() < 1e-14); // rounding of the doubled sums
 /// ```
+///
+/// Evidence: `the_corrected_algorithm_predicts_the_simulated_error` (statistics).
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointErrors {
     mean: SVector<f64, 6>,
@@ -386,7 +393,7 @@ impl JointErrors {
         self.moment(0, 0) + self.moment(1, 1) - self.moment(0, 1) - self.moment(1, 0)
     }
 
-    /// The second moment of the combined estimate's error, Σᵢⱼ μᵢ μⱼ E eⁱ eʲᵀ.
+    /// The second moment of the combined estimate's error, Σᵢⱼ μᵢ μⱼ E eⁱ eʲᵀ — derbez2000 (algorithm-step-6).
     ///
     /// Source: derbez2000, step 6 corrected: the paper's Σ μᵢ E eⁱ eⁱᵀ is above it, since Σ μᵢ eⁱeⁱᵀ − e eᵀ = Σ μᵢ (eⁱ − e)(eⁱ − e)ᵀ.
     ///
@@ -405,6 +412,8 @@ impl JointErrors {
     /// let apart = printed - errors.combined(&[0.5, 0.5]) - errors.gap() * 0.25;
     /// assert!(apart.abs().max() < 1e-12 * printed.abs().max()); // rounding
     /// ```
+    ///
+    /// Evidence: `the_error_of_step_6_is_below_its_upper_bound` (property).
     pub fn combined(&self, probabilities: &[f64; 2]) -> Matrix3<f64> {
         let mut sum = Matrix3::zeros();
         for i in 0..2 {

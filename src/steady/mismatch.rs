@@ -34,7 +34,7 @@ pub struct Mismatch<T> {
 }
 
 impl<T: Field> Mismatch<T> {
-    /// The filter with motion F, measurement H and gain K₊ on a target that moves by b more than F says.
+    /// The filter with motion F, measurement H and gain K₊ on a target that moves by b more than F says — derbez2000 (steady-matrices).
     ///
     /// Source: derbez2000, section 2.2, the definitions below (7).
     ///
@@ -56,6 +56,8 @@ impl<T: Field> Mismatch<T> {
     /// let filter = Mismatch::new(&embedded_constant_velocity(&one), &position_matrix(), gain, &missed, one);
     /// assert_eq!(filter.missed, vector![q(1, 8), q(3, 4), q(1, 1)]);
     /// ```
+    ///
+    /// Evidence: `the_long_term_error_is_that_of_a_simulation` (statistics).
     pub fn new(
         transition: &Matrix3<T>,
         measurement: &RowVector3<T>,
@@ -72,7 +74,7 @@ impl<T: Field> Mismatch<T> {
         }
     }
 
-    /// The lag: the mean of the error in its steady state, m = (I − A₊)⁻¹ b₊.
+    /// The lag: the mean of the error in its steady state, m = (I − A₊)⁻¹ b₊ — derbez2000 (proposition).
     ///
     /// Source: derbez2000 (7), in which it stands as (I − A₊)⁻¹ b₊; undecided where I − A₊ has no inverse.
     ///
@@ -152,7 +154,7 @@ impl<T: Field> Mismatch<T> {
 }
 
 impl<T: Field + PartialOrd> Mismatch<T> {
-    /// The long-term error: the solution of the equation, C + m mᵀ — derbez2000 (7).
+    /// The long-term error: the solution of the equation, C + m mᵀ — derbez2000 (7), (proposition).
     ///
     /// ```text
     /// C = A₊ C A₊ᵀ + K₊ R K₊ᵀ,   m = (I − A₊)⁻¹ b₊
@@ -192,7 +194,8 @@ impl<T: Field + PartialOrd> Mismatch<T> {
     }
 }
 
-/// What a constant velocity filter does not know of a target with the acceleration a: b = ΔF xₙ = a [t²/2, t, 1]ᵀ.
+/// What a constant velocity filter does not know of a target with the acceleration a: b = ΔF xₙ = a [t²/2, t, 1]ᵀ — derbez2000
+/// (constant-acceleration-input).
 ///
 /// Source: derbez2000, section 2.2, not numbered.
 ///
@@ -206,11 +209,14 @@ impl<T: Field + PartialOrd> Mismatch<T> {
 /// let missed = motion_missed(&Rational::integer(3), &Rational::integer(2));
 /// assert_eq!(missed, vector![6, 6, 3].map(Rational::integer));
 /// ```
+///
+/// Evidence: `the_lag_has_a_closed_form` (symbolic).
 pub fn motion_missed<T: Field>(acceleration: &T, interval: &T) -> Vector3<T> {
     acceleration_response(interval) * acceleration.clone()
 }
 
-/// The lag of the constant velocity filter with the gain [α, β/t, 0]ᵀ behind a constant acceleration, in closed form.
+/// The lag of the constant velocity filter with the gain [α, β/t, 0]ᵀ behind a constant acceleration, in closed form —
+/// derbez2000 (proposition).
 ///
 /// ```text
 /// m = a [ t²(1 − α)/β,  t(2α − β)/(2β),  1 ]ᵀ

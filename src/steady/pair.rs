@@ -123,7 +123,8 @@ pub fn remark_1_matrix<T: Field, const N: usize>(mixing: &[T], matrices: &[SMatr
     sum
 }
 
-/// The matrix that carries the errors of all filters when the mixing probabilities are constant: diag(Aⱼ) (U ⊗ I).
+/// The matrix that carries the errors of all filters when the mixing probabilities are constant: diag(Aⱼ) (U ⊗ I) — derbez2000
+/// (stability-matrices).
 ///
 /// ```text
 /// block (j, i) = μᵢ∣ⱼ Aⱼ

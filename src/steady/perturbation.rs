@@ -56,7 +56,7 @@ impl<T: Field, const N: usize> Perturbation<T, N> {
         &self.transition * &self.change * self.transition.transpose()
     }
 
-    /// The matrix that carries the state from one update to the next, under the perturbation.
+    /// The matrix that carries the state from one update to the next, under the perturbation — derbez2000 (perturbed-transition).
     ///
     /// Source: derbez2000, section 3.1, not numbered.
     ///
@@ -97,7 +97,7 @@ impl<T: Field, const N: usize> Perturbation<T, N> {
         (SMatrix::identity() - gain * &self.measurement) * &self.transition
     }
 
-    /// The first-order term: dA/dε at ε = 0.
+    /// The first-order term: dA/dε at ε = 0 — derbez2000 (perturbed-transition).
     ///
     /// Source: derbez2000, section 3.1, not numbered.
     ///
@@ -211,7 +211,8 @@ impl<T: Field, const N: usize> Perturbation<T, N> {
     }
 }
 
-/// What the spread of the means adds to mode i's covariance in the mixture for mode j, for two modes.
+/// What the spread of the means adds to mode i's covariance in the mixture for mode j, for two modes —
+/// derbez2000 (algorithm-step-3), (moment-matching-bound).
 ///
 /// Source: derbez2000 (1), and the identity below.
 ///
@@ -312,7 +313,8 @@ pub fn spread_bound<T: Field, const N: usize>(weight: &T, errors: [&SMatrix<T, N
     (errors[0] + errors[1]) * (T::integer(2) * weight.clone() * weight.clone())
 }
 
-/// μ¹∣²: how much of mode 2's mixed estimate comes from mode 1, in a symmetric chain of two modes.
+/// μ¹∣²: how much of mode 2's mixed estimate comes from mode 1, in a symmetric chain of two modes — derbez2000
+/// (moment-matching-size).
 ///
 /// Source: derbez2000 (3), with p₁₁ = p₂₂ = a.
 ///

@@ -37,7 +37,7 @@ use crate::steady::polynomial::{has_radius_below, rows_of};
 use crate::steady::riccati::Riccati;
 use nalgebra::{Matrix1, Matrix3, RowVector3, Vector3};
 
-/// Two motions that a filter tells apart by nothing, whose mixed covariances grow without bound.
+/// Two motions that a filter tells apart by nothing, whose mixed covariances grow without bound — derbez2000 (theorem).
 ///
 /// ```text
 ///      ⎡ 0 1  1 ⎤
@@ -49,6 +49,19 @@ use nalgebra::{Matrix1, Matrix3, RowVector3, Vector3};
 /// observable. Why the mixed covariances grow: T exchanges the filters and leaves H, so both see the same innovation with the same
 /// variance for every data, and the mode probabilities stay one half. The measured entry never learns of the others: with P⁰ = diag(·, w,
 /// w) the predicted position is uncorrelated with them. With the paper's chain the unseen variance obeys w′ = (9/5) w + 86/5.
+///
+/// Example: each motion forgets any state in three steps.
+///
+/// ```
+/// use immaculate::number::Rational;
+/// use immaculate::paper::derbez2000::instances::growing_mixture;
+/// use nalgebra::Matrix3;
+///
+/// for model in growing_mixture::<Rational>() {
+///     let f = &model.transition;
+///     assert_eq!(f * f * f, Matrix3::zeros());
+/// }
+/// ```
 ///
 /// Evidence: `the_mixed_covariances_of_the_theorem_s_instance_grow` (exact).
 pub fn growing_mixture<T: Field>() -> [Riccati<T, 3, 1>; 2] {

@@ -74,7 +74,17 @@ pub const POINTS: usize = 120;
 pub const PHASES: [usize; 4] = [10, 10, 30, 20];
 /// The variances of range and bearing, m² and rad².
 pub const MEASUREMENT_VARIANCES: [f64; 2] = [0.0025, 0.0001];
-/// The transition matrix of the Markov chain, constant velocity first: section 3.
+/// The transition matrix of the Markov chain, constant velocity first: section 3 — derbez2000 (transition).
+///
+/// Example: whatever the mode is now, some mode comes next.
+///
+/// ```
+/// use immaculate::paper::derbez2000::TRANSITION;
+///
+/// assert!(TRANSITION.iter().all(|row| row[0] + row[1] == 1.0));
+/// ```
+///
+/// Evidence: `the_constants_of_derbez2000_are_the_printed_ones` (traceability).
 pub const TRANSITION: [[f64; 2]; 2] = crate::steady::map::CHAIN;
 /// Operations a cycle of IMM, fixed gain and CA, in section 4.
 pub const OPERATIONS_OF_SECTION_4: [u32; 3] = [1332, 242, 590];

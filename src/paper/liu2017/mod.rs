@@ -56,7 +56,18 @@ pub const INTERVAL: f64 = 1.0;
 pub const FIRST_SECOND: usize = 1;
 /// The time at which it ends, s.
 pub const LAST_SECOND: usize = 200;
-/// |ω|, rad/s: printed as 3°, taken per second.
+/// |ω|, rad/s: printed as 3°, taken per second — liu2017 (turn-rate).
+///
+/// Example: fifty seconds turn by 150°.
+///
+/// ```
+/// use immaculate::paper::liu2017::TURN_RATE;
+///
+/// let degrees = (TURN_RATE * 50.0).to_degrees();
+/// assert!((degrees - 150.0).abs() < 1e-12); // a few units of the last place
+/// ```
+///
+/// Evidence: `the_constants_of_liu2017_are_the_printed_ones` (traceability).
 pub const TURN_RATE: f64 = 3.0 * std::f64::consts::PI / 180.0;
 /// The initial x, m.
 pub const INITIAL_X: f64 = 15000.0;
@@ -64,9 +75,29 @@ pub const INITIAL_X: f64 = 15000.0;
 pub const INITIAL_VELOCITY: [f64; 2] = [-180.0, 200.0];
 /// q of the constant velocity and of the turns, m²/s³.
 pub const NOISE_DENSITY: f64 = 1.0;
-/// σ of the range, m.
+/// σ of the range, m — liu2017 (measurement-noise).
+///
+/// Example: the entry of R is its square.
+///
+/// ```
+/// use immaculate::paper::liu2017::RANGE_DEVIATION;
+///
+/// assert_eq!(RANGE_DEVIATION * RANGE_DEVIATION, 1600.0);
+/// ```
+///
+/// Evidence: `the_constants_of_liu2017_are_the_printed_ones` (traceability).
 pub const RANGE_DEVIATION: f64 = 40.0;
-/// σ of the bearing, rad.
+/// σ of the bearing, rad — liu2017 (measurement-noise).
+///
+/// Example: at 15 km it is as far across as 105 m.
+///
+/// ```
+/// use immaculate::paper::liu2017::BEARING_DEVIATION;
+///
+/// assert!((BEARING_DEVIATION * 15_000.0 - 105.0).abs() < 1e-10); // rounding
+/// ```
+///
+/// Evidence: `the_constants_of_liu2017_are_the_printed_ones` (traceability).
 pub const BEARING_DEVIATION: f64 = 0.007;
 /// The probabilities of the modes at the start: constant velocity, left turn, right turn.
 pub const INITIAL_PROBABILITIES: [f64; 3] = [0.8, 0.1, 0.1];
@@ -85,6 +116,8 @@ pub const INITIAL_PROBABILITIES: [f64; 3] = [0.8, 0.1, 0.1];
 /// let predicted = [0, 1, 2].map(|mode| predicted_mode_probability(&chain, &[1.0, 0.0, 0.0], mode));
 /// assert_eq!(predicted, [0.95, 0.025, 0.025]);
 /// ```
+///
+/// Evidence: `the_constants_of_liu2017_are_the_printed_ones` (traceability).
 pub const TRANSITION: [[f64; 3]; 3] = [[0.95, 0.025, 0.025], [0.025, 0.95, 0.025], [0.025, 0.025, 0.95]];
 
 /// The scenario under the given choices.

@@ -191,7 +191,25 @@ impl Setup {
         Vector2::from(self.deviations.map(|deviation| deviation * deviation))
     }
 
-    /// The estimate of one measured point: its position, and no velocity or acceleration; constant velocity knows that it has none.
+    /// The estimate of one measured point — sustika2015 (one-point-initiation).
+    ///
+    /// Its position, and no velocity or acceleration; constant velocity knows that it has none.
+    ///
+    /// Example: one kilometre on the x-axis.
+    ///
+    /// ```
+    /// use immaculate::paper::specification::Choices;
+    /// use immaculate::paper::sustika2015::scenario;
+    /// use nalgebra::vector;
+    ///
+    /// let setup = scenario(&Choices::default())?.setup;
+    /// let estimate = setup.initial(&vector![1000.0, 0.0]);
+    /// assert_eq!(estimate.modes[0].mean, vector![1000.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    /// assert_eq!(estimate.modes[0].covariance[(4, 4)], 0.0); // constant velocity has no acceleration
+    /// # Ok::<(), immaculate::paper::specification::InvalidChoice>(())
+    /// ```
+    ///
+    /// Evidence: `a_run_begins_at_the_first_measurement_and_is_measured_from_the_first_step_that_is_filtered`.
     pub fn initial(&self, first: &Vector2<f64>) -> Initial<f64, 6> {
         let ([range, bearing], variances) = ([first[0], first[1]], self.variances());
         let position = self.conversion.position(&range, &bearing, &variances[1]);

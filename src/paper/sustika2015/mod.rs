@@ -72,15 +72,57 @@ pub const INITIAL_VELOCITY: [f64; 2] = [4.0, 3.0];
 pub const NOISE_DENSITY: f64 = 0.1;
 /// σ_r and σ_θ of the radar, m and rad: table 1.
 pub const MEASUREMENT_DEVIATIONS: [f64; 2] = [10.0, DEGREE];
-/// First and last second of each manoeuvre as printed: table 1.
+/// First and last second of each manoeuvre as printed, table 1 — sustika2015 (manoeuvre-window).
+///
+/// Example: as printed, half of the 200 s are manoeuvres.
+///
+/// ```
+/// use immaculate::paper::sustika2015::MANOEUVRING_SECONDS;
+///
+/// let seconds: usize = MANOEUVRING_SECONDS.iter().map(|[first, last]| last - first + 1).sum();
+/// assert_eq!(seconds, 100);
+/// ```
+///
+/// Evidence: `the_constants_of_sustika2015_are_the_printed_ones` (traceability).
 pub const MANOEUVRING_SECONDS: [[usize; 2]; 2] = [[1, 50], [71, 120]];
 /// q of the filters in scenario 2: table 2.
 pub const FILTER_NOISE_DENSITY: f64 = 0.01;
-/// σ_r and σ_θ of the filters in scenario 2, m and rad: table 2.
+/// σ_r and σ_θ of the filters in scenario 2, m and rad, table 2 — sustika2015 (azimuth-deviation-of-the-filter).
+///
+/// Example: the azimuth is taken for four times as noisy as it is, the range as it is.
+///
+/// ```
+/// use immaculate::paper::sustika2015::{FILTER_DEVIATIONS, MEASUREMENT_DEVIATIONS};
+///
+/// let factors = [0, 1].map(|row| FILTER_DEVIATIONS[row] / MEASUREMENT_DEVIATIONS[row]);
+/// assert_eq!(factors, [1.0, 4.0]);
+/// ```
+///
+/// Evidence: `the_constants_of_sustika2015_are_the_printed_ones` (traceability).
 pub const FILTER_DEVIATIONS: [f64; 2] = [10.0, 4.0 * DEGREE];
-/// The transition matrix of the Markov chain, constant velocity first: table 2.
+/// The transition matrix of the Markov chain, constant velocity first, table 2 — sustika2015 (transition).
+///
+/// Example: whatever the mode is now, some mode comes next.
+///
+/// ```
+/// use immaculate::paper::sustika2015::TRANSITION;
+///
+/// assert!(TRANSITION.iter().all(|row| row[0] + row[1] == 1.0));
+/// ```
+///
+/// Evidence: `the_constants_of_sustika2015_are_the_printed_ones` (traceability).
 pub const TRANSITION: [[f64; 2]; 2] = [[0.95, 0.05], [0.05, 0.95]];
-/// The mode probabilities at first: table 2.
+/// The mode probabilities at first, table 2 — sustika2015 (initial-probabilities).
+///
+/// Example: one of the two modes holds.
+///
+/// ```
+/// use immaculate::paper::sustika2015::INITIAL_PROBABILITIES;
+///
+/// assert_eq!(INITIAL_PROBABILITIES[0] + INITIAL_PROBABILITIES[1], 1.0);
+/// ```
+///
+/// Evidence: `the_constants_of_sustika2015_are_the_printed_ones` (traceability).
 pub const INITIAL_PROBABILITIES: [f64; 2] = [0.9, 0.1];
 /// The estimate of the velocity at first, m/s: section 4.
 pub const INITIAL_VELOCITY_ESTIMATE: [f64; 2] = [0.0, 0.0];
@@ -97,7 +139,7 @@ pub const DIVERGENT_FIT_ERROR: f64 = 20.0;
 pub const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
 /// First and last second of each manoeuvre in the example of the EKF/UKF toolbox, whose times of constant velocity are those that table 1
-/// prints for the manoeuvres.
+/// prints for the manoeuvres — sustika2015 (manoeuvre-window).
 ///
 /// Source: Hartikainen, Solin and Särkkä 2011, the example of an IMM filter with constant velocity and constant acceleration.
 ///
@@ -109,6 +151,8 @@ pub const DEGREE: f64 = std::f64::consts::PI / 180.0;
 /// assert_eq!(MANOEUVRING_SECONDS, [[1, 50], [71, 120]]);
 /// assert!((0..2).all(|turn| MANOEUVRING_SECONDS[turn][1] + 1 == TOOLBOX_SECONDS[turn][0]));
 /// ```
+///
+/// Evidence: `the_printed_manoeuvres_are_the_times_of_constant_velocity_of_the_toolbox`.
 pub const TOOLBOX_SECONDS: [[usize; 2]; 2] = [[51, 70], [121, 150]];
 
 /// The simulation under the given choices.
