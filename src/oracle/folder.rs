@@ -8,6 +8,7 @@ use super::problem::ProblemFile;
 use super::process::read_answer;
 use super::subject::{Answer, Broken, Ready, Subject};
 use super::trace::read_json;
+use crate::file;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -20,16 +21,14 @@ pub struct Folder {
 
 /// Reads a file of bounded size; none if there is no such file.
 fn read_file(path: &Path) -> Result<Option<String>, Broken> {
-    const GREATEST: u64 = 1 << 28;
     let wrong = |reason: String| Broken::NotStarted(format!("{}: {reason}", path.display()));
     match std::fs::metadata(path) {
         Err(_) => return Ok(None),
-        Ok(metadata) if metadata.len() > GREATEST => return Err(wrong(format!("is larger than {GREATEST} bytes"))),
+        // A pipe would be waited for without an end.
+        Ok(metadata) if !metadata.is_file() => return Err(wrong("is not a file".into())),
         Ok(_) => {}
     }
-    std::fs::read_to_string(path)
-        .map(Some)
-        .map_err(|error| wrong(error.to_string()))
+    file::read(path).map(Some).map_err(|error| wrong(error.to_string()))
 }
 
 impl Subject for Folder {

@@ -6,9 +6,10 @@
 use super::problem::ProblemFile;
 use super::subject::{Answer, Broken, ECHO, Ready, Subject};
 use super::trace::{Dimensions, Trace, read_json};
+use crate::file::{LONGEST_LINE, read_line};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
-use std::io::{BufRead, BufReader, Read, Write};
+use std::io::{BufReader, ErrorKind, Read, Write};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, SyncSender, channel, sync_channel};
 use std::sync::{Arc, Mutex};
@@ -16,9 +17,6 @@ use std::time::{Duration, Instant};
 
 /// The protocol's name.
 pub const PROTOCOL: &str = "immaculate-check/1";
-
-/// No line of an answer may be longer, in bytes.
-const LONGEST_LINE: u64 = 1 << 26;
 
 /// So many lines wait to be read; a program that writes more is held up, so that it fills no memory.
 const WAITING: usize = 4;
@@ -360,11 +358,10 @@ fn error_of(value: Option<&Value>) -> Option<String> {
 fn read_lines(stdout: impl Read, lines: &SyncSender<Line>) {
     let mut reader = BufReader::new(stdout);
     loop {
-        let mut bytes = Vec::new();
-        let line = match reader.by_ref().take(LONGEST_LINE).read_until(b'\n', &mut bytes) {
-            Ok(0) | Err(_) => return,
-            Ok(length) if length as u64 == LONGEST_LINE => Line::TooLong,
-            Ok(_) => String::from_utf8(bytes).map_or_else(|error| not_text(error.as_bytes()), Line::Text),
+        let line = match read_line(&mut reader) {
+            Ok(Some(bytes)) => String::from_utf8(bytes).map_or_else(|error| not_text(error.as_bytes()), Line::Text),
+            Err(error) if error.kind() == ErrorKind::FileTooLarge => Line::TooLong,
+            Ok(None) | Err(_) => return,
         };
         if lines.send(line).is_err() {
             return;
