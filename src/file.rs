@@ -25,7 +25,7 @@ pub fn read(path: &Path) -> io::Result<String> {
     read_from(File::open(path)?)
 }
 
-/// The text that a reader gives, if it is not longer than [`LONGEST_FILE`].
+/// The text that a reader gives, if it is not longer than [`LONGEST_FILE`]; without the mark of byte order that it may start with.
 ///
 /// # Errors
 ///
@@ -36,7 +36,8 @@ pub fn read_from(reader: impl Read) -> io::Result<String> {
     if text.len() as u64 > LONGEST_FILE {
         return Err(too_long("is longer", LONGEST_FILE));
     }
-    Ok(text)
+    // Some editors mark their text as UTF-8.
+    Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
 }
 
 /// The next line with its end, if it is not longer than [`LONGEST_LINE`]; none after the last.
@@ -83,7 +84,7 @@ pub fn write(path: &Path, content: &str) -> io::Result<()> {
         _ => {}
     }
     let part = &path.with_file_name(temporary_name());
-    let permissions = old.map(|old| old.permissions());
+    let permissions = old.as_ref().map(fs::Metadata::permissions);
     write_new(part, content, permissions)
         .and_then(|()| fs::rename(part, path))
         .inspect_err(|_| {

@@ -1,16 +1,18 @@
 //! The command line: reads arguments, calls the library, prints.
 //!
-//! Exit status: 0 when the command did what was asked, 1 when its output could not be written or what it checked is wrong, 2 when it
-//! was asked for something that does not exist.
+//! Exit status: 0 when the command did what was asked, or nobody wanted to read on, 1 when its output could not be written or what it
+//! checked is wrong, 2 when its arguments or its input are wrong or name something that does not exist.
 
 mod cli;
 
+pub use cli::Refusal;
+
 use clap::{Args, Parser, Subcommand};
-use cli::{Done, MOST_RUNS, Refusal, effort, json_text, papers, print};
+use cli::{Done, MOST_RUNS, check_that_memory_does, effort, json_text, papers, print};
 use immaculate::number::Rational;
 use immaculate::oracle::invalid::shortened;
+use immaculate::paper::Paper;
 use immaculate::paper::monte_carlo::Progress;
-use immaculate::paper::{Effort, Paper};
 use immaculate::report;
 use immaculate::rule::{RuleName, unscented};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -22,9 +24,9 @@ use std::process::ExitCode;
 #[derive(Parser)]
 #[command(version, about, arg_required_else_help = true)]
 #[command(
-    after_help = "Exit status: 0 done, 1 output could not be written or something that was checked is wrong, 2 asked for something that does not exist."
+    after_help = "Exit status: 0 done, 1 output could not be written or something that was checked is wrong, 2 the arguments or the input are wrong or name something that does not exist. A reader that stops reading is no error."
 )]
-struct Cli {
+pub struct Cli {
     #[command(subcommand)]
     command: Command,
 }
@@ -118,7 +120,12 @@ fn main() -> ExitCode {
     }
 }
 
-fn run(cli: &Cli) -> Result<Done, Refusal> {
+/// Does what the arguments ask for.
+///
+/// # Errors
+///
+/// [`Refusal`] with the sentence and, by its kind, the exit status.
+pub fn run(cli: &Cli) -> Result<Done, Refusal> {
     match &cli.command {
         Command::Reproduce(arguments) => cli::reproduce::run(arguments),
         Command::Claims(arguments) => claims(arguments).map(Done::from),
@@ -169,20 +176,6 @@ fn claims(arguments: &Claims) -> Result<String, Refusal> {
         return Ok(json_text(&json!({ "seed": arguments.seed, "papers": values })));
     }
     Ok(text)
-}
-
-/// The judges keep runs in memory, and each paper's has room for so many.
-fn check_that_memory_does(papers: &[Paper], effort: Effort) -> Result<(), Refusal> {
-    for paper in papers {
-        let most = paper.most_judged_runs();
-        if effort.runs.is_some_and(|runs| runs > most) {
-            let key = paper.key();
-            return Err(Refusal::request(format!(
-                "--runs: the judges of {key} keep all runs in memory, at most {most}"
-            )));
-        }
-    }
-    Ok(())
 }
 
 fn rule(arguments: &Rule) -> Result<String, Refusal> {

@@ -107,6 +107,20 @@ pub fn effort(runs: Option<u64>, seed: u64) -> Effort {
     }
 }
 
+/// The judges keep runs in memory, and each paper's has room for so many.
+pub fn check_that_memory_does(papers: &[Paper], effort: Effort) -> Result<(), Refusal> {
+    for paper in papers {
+        let most = paper.most_judged_runs();
+        if effort.runs.is_some_and(|runs| runs > most) {
+            let key = paper.key();
+            return Err(Refusal::request(format!(
+                "--runs: the judges of {key} keep all runs in memory, at most {most}"
+            )));
+        }
+    }
+    Ok(())
+}
+
 /// A progress bar on standard error; it shows itself only where a person is watching.
 pub fn progress_bar(length: u64, what: &'static str) -> ProgressBar {
     let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} runs, {eta} left")

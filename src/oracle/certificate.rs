@@ -18,9 +18,9 @@ pub const FORMAT: &str = "immaculate-certificate/1";
 /// Numbers from here to here are noises and times that somebody may have; others are taken for mistakes of scale.
 pub const SANE: [f64; 2] = [1e-12, 1e12];
 
-/// A number of a certificate has at most so many bits above and below its fraction bar together: about a hundred decimal digits. A proof
-/// multiplies them with each other letter by letter, and the time grows with the square of their length.
-const LONGEST_NUMBER: u64 = 512;
+/// A number of a certificate has at most so many bits above and below its fraction bar together: about three hundred decimal digits. A
+/// proof multiplies them with each other, and the time grows with the square of their length.
+const LONGEST_NUMBER: u64 = 1024;
 
 /// The longest word of a proof of instability, letters. The longest one that is looked for has two runs of 64.
 const LONGEST_WORD: usize = 128;

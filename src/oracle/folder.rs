@@ -4,6 +4,7 @@
 //! is said of a case without a file, and that files are judged as messages are.
 
 use super::csv;
+use super::invalid::shortened;
 use super::problem::ProblemFile;
 use super::process::read_answer;
 use super::subject::{Answer, Broken, Ready, Subject};
@@ -64,7 +65,7 @@ impl Folder {
             return match message.get("id").and_then(Value::as_str) {
                 Some(id) if id != problem.id => Err(Broken::OutOfOrder {
                     asked: problem.id.clone(),
-                    answered: id.to_owned(),
+                    answered: shortened(id, 100),
                 }),
                 _ => read_answer(&message, dimensions),
             };

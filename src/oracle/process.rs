@@ -3,6 +3,7 @@
 //! After this file the reader knows how a program that hangs, ends, floods or answers out of order is noticed. Reading and writing
 //! happen in threads of their own, so that nothing the program does can block the check.
 
+use super::invalid;
 use super::problem::ProblemFile;
 use super::subject::{Answer, Broken, ECHO, Ready, Subject};
 use super::trace::{Dimensions, Trace, read_json};
@@ -20,6 +21,9 @@ pub const PROTOCOL: &str = "immaculate-check/1";
 
 /// So many lines wait to be read; a program that writes more is held up, so that it fills no memory.
 const WAITING: usize = 4;
+
+/// So much of the reason that a program gives is kept, characters.
+const REASON_KEPT: usize = 500;
 
 /// So many remarks are kept.
 const REMARKS: usize = 100;
@@ -246,7 +250,7 @@ impl Process {
             if id != problem.id {
                 return Err(Broken::OutOfOrder {
                     asked: problem.id.clone(),
-                    answered: id,
+                    answered: shortened(&id),
                 });
             }
             return read_answer(&message, problem.dimensions());
@@ -316,12 +320,17 @@ pub fn read_answer(message: &Value, dimensions: Dimensions) -> Result<Answer, Br
             reason: "an answer is an object".into(),
         });
     }
-    let text = |key: &str| message.get(key).and_then(Value::as_str).unwrap_or_default().to_owned();
+    let text = |key: &str| {
+        invalid::shortened(
+            message.get(key).and_then(Value::as_str).unwrap_or_default(),
+            REASON_KEPT,
+        )
+    };
     match message.get("type").and_then(Value::as_str) {
         Some("answer") | None => {
             for key in message.as_object().into_iter().flat_map(|object| object.keys()) {
                 if !["type", "id", "format", "steps", "error", "scale", "noise"].contains(&key.as_str()) {
-                    let reason = format!("`{key}` is not a key of an answer");
+                    let reason = format!("`{}` is not a key of an answer", shortened(key));
                     let line = shortened(&message.to_string());
                     return Err(Broken::Garbage { line, reason });
                 }
@@ -339,7 +348,7 @@ pub fn read_answer(message: &Value, dimensions: Dimensions) -> Result<Answer, Br
         }),
         Some(other) => Err(Broken::Garbage {
             line: shortened(&message.to_string()),
-            reason: format!("{other:?} is not the type of an answer"),
+            reason: format!("{:?} is not the type of an answer", shortened(other)),
         }),
     }
 }
@@ -348,7 +357,7 @@ pub fn read_answer(message: &Value, dimensions: Dimensions) -> Result<Answer, Br
 fn error_of(value: Option<&Value>) -> Option<String> {
     match value? {
         Value::Null | Value::Bool(false) => None,
-        Value::String(text) => (!text.trim().is_empty()).then(|| text.clone()),
+        Value::String(text) => (!text.trim().is_empty()).then(|| invalid::shortened(text, REASON_KEPT)),
         Value::Array(list) if list.is_empty() => None,
         Value::Object(object) if object.is_empty() => None,
         other => Some(shortened(&other.to_string())),
