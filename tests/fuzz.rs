@@ -750,7 +750,8 @@ fn a_file_and_a_line_have_a_greatest_length() {
 // Arguments
 
 /// Every command with places for words.
-const COMMANDS: [(&[&str], &[&str]); 18] = [
+const COMMANDS: [(&[&str], &[&str]); 19] = [
+    (&["equation", "_"], &[]),
     (&["rule", "_", "-n", "_"], &["--json"]),
     (&["rule", "unscented", "-n", "4"], &["--alpha", "--beta", "--kappa"]),
     (&["choices", "_"], &["--json"]),
@@ -790,7 +791,8 @@ const COMMANDS: [(&[&str], &[&str]); 18] = [
 ];
 
 /// Words that something could be: names, numbers, fractions and their likes.
-const WORDS: [&str; 44] = [
+const WORDS: [&str; 45] = [
+    "zhu2016(56)",
     "",
     " ",
     "0",
