@@ -249,7 +249,7 @@ fn a_line_of_a_hundred_megabytes_is_not_read() {
     let says = "printf '{'; head -c 100000000 /dev/zero | tr '\\000' 'a'; echo";
     let report = verdict(&answers.script(&[("update.kalman", says)]));
     let sentence = broken_sentence(&report, "update.kalman");
-    assert!(sentence.contains("a line longer than 67108864 bytes"), "{sentence}");
+    assert!(sentence.contains("a line longer than 16777216 bytes"), "{sentence}");
     assert_others_are_right(&report, "update.kalman");
 }
 

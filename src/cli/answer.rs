@@ -2,12 +2,12 @@
 //!
 //! After this file the reader knows how this crate answers the messages of a check, which is how any program does.
 
-use super::{Done, Refusal};
+use super::{Done, Refusal, print};
 use clap::{Args, ValueEnum};
+use immaculate::file::read_line;
 use immaculate::oracle::answer::{Message, respond};
 use immaculate::oracle::subject::{Level, Planted};
 use immaculate::oracle::variant::find;
-use std::io::{BufRead, Write};
 
 /// How much is shown.
 #[derive(Clone, Copy, ValueEnum)]
@@ -47,14 +47,15 @@ pub fn run(arguments: &Answer) -> Result<Done, Refusal> {
             Show::Combined => Level::Combined,
         },
     };
-    for line in std::io::stdin().lock().lines() {
-        let line = line.map_err(|error| Refusal::Output(format!("standard input: {error}")))?;
+    let wrong = |reason: String| Refusal::Request(format!("standard input: {reason}"));
+    let mut input = std::io::stdin().lock();
+    while let Some(line) = read_line(&mut input).map_err(|error| wrong(error.to_string()))? {
+        let line = String::from_utf8(line).map_err(|_| wrong("a line that is not UTF-8".into()))?;
         match respond(&mut planted, &line) {
             Message::Reply(reply) => {
-                let mut out = std::io::stdout().lock();
-                writeln!(out, "{reply}")
-                    .and_then(|()| out.flush())
-                    .map_err(|error| Refusal::Output(format!("standard output: {error}")))?;
+                if !print(&format!("{reply}\n"))? {
+                    break;
+                }
             }
             Message::Stop => break,
             Message::NotUnderstood(reason) => return Err(Refusal::request(reason)),

@@ -3,7 +3,7 @@
 //! After this file the reader knows how cases are listed, copied and proven again, and that only `cases write` writes them and never
 //! changes one.
 
-use super::{Done, Refusal, json_text, write_file};
+use super::{Done, Refusal, json_text, make_directory, read_file, write_file};
 use clap::{Args, Subcommand, ValueEnum};
 use immaculate::oracle::case::{self, Case, Expected, LOCK, Lock, Locked};
 use immaculate::oracle::certify::{certify, long_csv};
@@ -151,7 +151,7 @@ fn show(id: &str, as_json: bool) -> Result<Done, Refusal> {
 
 fn copy(folder: &Path, select: &Select) -> Result<Done, Refusal> {
     let cases = select.cases()?;
-    std::fs::create_dir_all(folder).map_err(|error| Refusal::Output(format!("{}: {error}", folder.display())))?;
+    make_directory(folder)?;
     let mut files = 0;
     for case in &cases {
         let id = &case.problem.id;
@@ -207,8 +207,7 @@ type Written = (String, String, String);
 
 fn write(folder: &Path) -> Result<Done, Refusal> {
     let path = folder.join(LOCK);
-    let text =
-        std::fs::read_to_string(&path).map_err(|error| Refusal::request(format!("{}: {error}", path.display())))?;
+    let text = read_file(&path)?;
     let mut lock = Lock::read(&text).map_err(|error| Refusal::request(format!("{}: {error}", path.display())))?;
     let problems = published::all();
     for problem in problems

@@ -1,6 +1,6 @@
 //! The commands, one file each: arguments in, text and exit status out.
 //!
-//! After this folder the reader knows how each command calls the library, and that files are written whole or not at all.
+//! After this folder the reader knows how each command calls the library.
 
 pub mod answer;
 pub mod cases;
@@ -13,7 +13,8 @@ pub mod sweep;
 pub mod trace;
 pub mod variants;
 
-use immaculate::paper::{Effort, Paper};
+use immaculate::file;
+use immaculate::paper::{self, Effort, Paper};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::Write;
 use std::path::Path;
@@ -52,43 +53,39 @@ pub fn json_text(value: &serde_json::Value) -> String {
     format!("{value:#}\n")
 }
 
-/// Writes a file whole or not at all: what was there before stays until all is written.
+/// Writes to standard output; whether somebody reads it. A reader that has gone away has read enough, and that is no error.
+pub fn print(text: &str) -> Result<bool, Refusal> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Ok(()) => Ok(true),
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(false),
+        Err(error) => Err(Refusal::Output(format!("standard output: {error}"))),
+    }
+}
+
+/// Writes a file whole or not at all, as [`file::write`] says.
 pub fn write_file(path: &Path, content: &str) -> Result<(), Refusal> {
-    let wrong = |error: std::io::Error| Refusal::Output(format!("{}: {error}", path.display()));
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(".part");
-    let part = path.with_file_name(name);
-    let written = std::fs::File::create(&part).and_then(|mut file| {
-        file.write_all(content.as_bytes())?;
-        file.sync_all()
-    });
-    written.and_then(|()| std::fs::rename(&part, path)).map_err(|error| {
-        // What was written of it is of no use.
-        let _ = std::fs::remove_file(&part);
-        wrong(error)
-    })
+    file::write(path, content).map_err(|error| Refusal::Output(about(path, &error)))
+}
+
+/// Makes a directory, and those it is in, where they are not there.
+pub fn make_directory(path: &Path) -> Result<(), Refusal> {
+    std::fs::create_dir_all(path).map_err(|error| Refusal::Output(about(path, &error)))
 }
 
 /// Reads a text file of bounded size, or standard input for `-`.
 pub fn read_file(path: &Path) -> Result<String, Refusal> {
-    const GREATEST: u64 = 1 << 28;
-    let wrong = |reason: String| Refusal::Request(format!("{}: {reason}", path.display()));
-    let reader: Box<dyn std::io::Read> = if path == Path::new("-") {
-        Box::new(std::io::stdin())
+    let text = if path == Path::new("-") {
+        file::read_from(std::io::stdin())
     } else {
-        Box::new(std::fs::File::open(path).map_err(|error| wrong(error.to_string()))?)
+        file::read(path)
     };
-    let mut text = String::new();
-    let length = std::io::Read::take(reader, GREATEST)
-        .read_to_string(&mut text)
-        .map_err(|error| wrong(error.to_string()))?;
-    if length as u64 == GREATEST {
-        return Err(wrong(format!("is larger than {GREATEST} bytes")));
-    }
-    Ok(text)
+    text.map_err(|error| Refusal::Request(about(path, &error)))
 }
 
-use std::io::Read as _;
+fn about(path: &Path, error: &std::io::Error) -> String {
+    format!("{}: {error}", path.display())
+}
 
 /// The given papers; all when there is none.
 pub fn papers(given: &[Paper]) -> Vec<Paper> {
@@ -99,12 +96,29 @@ pub fn papers(given: &[Paper]) -> Vec<Paper> {
     }
 }
 
+/// The greatest number of runs as an argument.
+pub const MOST_RUNS: u64 = paper::MOST_RUNS as u64;
+
 /// How much is computed.
 pub fn effort(runs: Option<u64>, seed: u64) -> Effort {
     Effort {
         runs: runs.and_then(|runs| usize::try_from(runs).ok()),
         seed,
     }
+}
+
+/// The judges keep runs in memory, and each paper's has room for so many.
+pub fn check_that_memory_does(papers: &[Paper], effort: Effort) -> Result<(), Refusal> {
+    for paper in papers {
+        let most = paper.most_judged_runs();
+        if effort.runs.is_some_and(|runs| runs > most) {
+            let key = paper.key();
+            return Err(Refusal::request(format!(
+                "--runs: the judges of {key} keep all runs in memory, at most {most}"
+            )));
+        }
+    }
+    Ok(())
 }
 
 /// A progress bar on standard error; it shows itself only where a person is watching.

@@ -2,8 +2,9 @@
 //!
 //! After this file the reader knows how the page is asked for, and what is shown while it is computed.
 
-use super::{Done, Refusal, effort, write_file};
+use super::{Done, MOST_RUNS, Refusal, check_that_memory_does, effort, write_file};
 use clap::Args;
+use immaculate::paper::Paper;
 use immaculate::report::page;
 use immaculate::report::page::content::{Content, Extent, Watch};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -17,7 +18,7 @@ pub struct Report {
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
     /// The number of Monte-Carlo runs of everything; when not given the papers' own, and what the judges of claims ask for
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=1_000_000))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=MOST_RUNS))]
     runs: Option<u64>,
     /// The seed of the random numbers
     #[arg(long, value_name = "S", default_value_t = 1)]
@@ -33,6 +34,7 @@ pub fn run(arguments: &Report) -> Result<Done, Refusal> {
         effort: effort(arguments.runs, arguments.seed),
         map_points: MAP_POINTS,
     };
+    check_that_memory_does(&Paper::ALL, extent.effort)?;
     let bar = ProgressBar::new(0);
     let watch = Watch {
         begin: &|step, length| begin(&bar, step, length),

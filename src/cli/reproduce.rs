@@ -2,7 +2,7 @@
 //!
 //! After this file the reader knows what is run for which paper, and what each file of `--out` is.
 
-use super::{Done, Refusal, effort, json_text, papers, progress_bar, write_file};
+use super::{Done, MOST_RUNS, Refusal, effort, json_text, make_directory, papers, progress_bar, write_file};
 use clap::Args;
 use immaculate::paper::monte_carlo::Progress;
 use immaculate::paper::specification::Choices;
@@ -17,8 +17,8 @@ use std::path::{Path, PathBuf};
 pub struct Reproduce {
     /// The papers; all when none is given [possible: derbez2000, sustika2015, zhu2016, liu2017]
     papers: Vec<Paper>,
-    /// The number of Monte-Carlo runs; the paper's own when not given
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=1_000_000))]
+    /// The number of Monte-Carlo runs, all of which are kept in memory; the paper's own when not given
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=MOST_RUNS))]
     runs: Option<u64>,
     /// The seed of the random numbers
     #[arg(long, value_name = "S", default_value_t = 1)]
@@ -52,8 +52,7 @@ pub fn run(arguments: &Reproduce) -> Result<Done, Refusal> {
     let effort = effort(arguments.runs, arguments.seed);
     let plan = plan(arguments, &papers, &chosen)?;
     if let Some(directory) = &arguments.out {
-        std::fs::create_dir_all(directory)
-            .map_err(|error| Refusal::Output(format!("{}: {error}", directory.display())))?;
+        make_directory(directory)?;
     }
     let asks_for_cause = arguments.choices.is_empty() && papers.contains(&Paper::Sustika2015);
     let runs_for_cause = effort.runs.unwrap_or(divergence::RUNS);

@@ -3,7 +3,7 @@
 //! After this file the reader knows how noises become a verdict with its proof, how a proof is written and checked again, and how the map
 //! is asked for.
 
-use super::{Done, Refusal, json_text, read_file, write_file};
+use super::{Done, Refusal, json_text, make_directory, read_file, write_file};
 use clap::Args;
 use immaculate::oracle::certificate::{CertificateFile, FiltersFile, Noises};
 use immaculate::report::{stability, stability_map};
@@ -144,8 +144,7 @@ fn map(arguments: &Stability) -> Result<Done, Refusal> {
         return Err(Refusal::request("`--from` must be below `--to`"));
     }
     if let Some(directory) = &arguments.out {
-        std::fs::create_dir_all(directory)
-            .map_err(|error| Refusal::Output(format!("{}: {error}", directory.display())))?;
+        make_directory(directory)?;
     }
     let side = usize::from(arguments.points);
     let bar = ProgressBar::new((side * side) as u64).with_message("deciding");

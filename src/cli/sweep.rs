@@ -2,7 +2,7 @@
 //!
 //! After this file the reader knows where the journal of a sweep is, from which an interrupted one goes on, and what else is written.
 
-use super::{Refusal, json_text, write_file};
+use super::{Refusal, json_text, make_directory, write_file};
 use immaculate::paper::Effort;
 use immaculate::paper::specification::Choices;
 use immaculate::paper::sustika2015::RUNS;
@@ -38,7 +38,7 @@ pub fn run(
 
 /// The sweep with a journal, and its figures.
 fn with_files(sweep: &Sweep, directory: &Path, advance: &(dyn Fn() + Sync)) -> Result<Vec<(Setting, Point)>, Refusal> {
-    std::fs::create_dir_all(directory).map_err(|error| Refusal::Output(format!("{}: {error}", directory.display())))?;
+    make_directory(directory)?;
     let journal = directory.join("sustika2015-sweep.csv");
     let points = sweep.run(&journal, advance).map_err(|error| match error {
         BadJournal::File { .. } => Refusal::Output(error.to_string()),

@@ -12,10 +12,16 @@ use std::cmp::Ordering;
 /// short text such as `1e999999999` from becoming a number of a billion digits.
 const LARGEST_EXPONENT: i64 = 10_000;
 
+/// The longest text that is read: reading takes time as the square of the number of digits.
+const LONGEST_TEXT: usize = 10_000;
+
 /// The exact value of a decimal: a sign, digits, perhaps a point among them, and perhaps a power of ten after `e`.
 ///
-/// `None` if the text is anything else, or if its power of ten is too large to be meant.
+/// `None` if the text is anything else, or if its power of ten or the number of its digits is too large to be meant.
 pub(super) fn read(text: &str) -> Option<BigRational> {
+    if text.len() > LONGEST_TEXT {
+        return None;
+    }
     let (mantissa, exponent) = match text.split_once(['e', 'E']) {
         Some((mantissa, exponent)) => (mantissa, read_exponent(exponent)?),
         None => (text, 0),

@@ -68,7 +68,7 @@ impl Rational {
 
     /// The exact value of a decimal such as `0.1`, `-1e-3` or `+12.50E2`.
     ///
-    /// `None` if the text is anything else, or if its power of ten is beyond ±10 000.
+    /// `None` if the text is anything else, longer than 10 000 characters, or if its power of ten is beyond ±10 000.
     pub fn from_decimal(text: &str) -> Option<Self> {
         decimal::read(text).map(Self::from_big)
     }

@@ -5,6 +5,7 @@
 //! nothing. Every number is a fraction in quotes, "−1.5" and "-3/2" alike.
 
 use super::case::digest;
+use super::invalid::shortened;
 use crate::number::Rational;
 use crate::steady::certificate::{Edge, NotProven, Product, Quadratics};
 use crate::steady::verdict::{Filters, LETTERS, Verdict, word_text};
@@ -16,6 +17,19 @@ pub const FORMAT: &str = "immaculate-certificate/1";
 
 /// Numbers from here to here are noises and times that somebody may have; others are taken for mistakes of scale.
 pub const SANE: [f64; 2] = [1e-12, 1e12];
+
+/// A number of a certificate has at most so many bits above and below its fraction bar together: about three hundred decimal digits. A
+/// proof multiplies them with each other, and the time grows with the square of their length.
+const LONGEST_NUMBER: u64 = 1024;
+
+/// The longest word of a proof of instability, letters. The longest one that is looked for has two runs of 64.
+const LONGEST_WORD: usize = 128;
+
+/// The most forms of a proof of stability: those with a memory of eight letters, the longest that is tried.
+const MOST_FORMS: usize = 256;
+
+/// The most edges between them: from each one for each of the two letters.
+const MOST_EDGES: usize = 2 * MOST_FORMS;
 
 /// A certificate as it stands in a file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -131,11 +145,22 @@ pub fn read_number(field: &str, text: &str) -> Result<Rational, InvalidCertifica
     let (numerator, denominator) = text.split_once('/').unwrap_or((text, "1"));
     let parts = Rational::from_decimal(numerator.trim()).zip(Rational::from_decimal(denominator.trim()));
     let value = parts.map(|(p, q)| p / q).filter(Rational::is_decided);
-    value.ok_or_else(|| wrong(field, format!("is `{text}`, which is no decimal and no fraction")))
+    let value = value.ok_or_else(|| wrong(field, format!("is `{text}`, which is no decimal and no fraction")))?;
+    if bits(&value) > LONGEST_NUMBER {
+        return Err(wrong(field, format!("is {text}: it has too many digits")));
+    }
+    Ok(value)
 }
 
-fn wrong(field: &str, reason: String) -> InvalidCertificate {
-    let field = field.to_owned();
+/// The length of a fraction.
+fn bits(value: &Rational) -> u64 {
+    let value = value.value();
+    value.map_or(0, |value| value.numer().bits() + value.denom().bits())
+}
+
+/// What is wrong with a number, which may be megabytes long.
+fn wrong(field: &str, reason: impl AsRef<str>) -> InvalidCertificate {
+    let (field, reason) = (field.to_owned(), shortened(reason.as_ref(), 500));
     InvalidCertificate::Number { field, reason }
 }
 
@@ -255,6 +280,7 @@ impl CertificateFile {
     /// [`InvalidCertificate`] with the reason why it proves nothing.
     pub fn check(&self) -> Result<Verdict, InvalidCertificate> {
         let filters = self.filters.filters()?;
+        self.check_size()?;
         match &self.proof {
             ProofFile::Stable { edges, forms } => {
                 let edge = |(from, letter, to): &(usize, char, usize)| {
@@ -276,6 +302,21 @@ impl CertificateFile {
                 filters.check_unstable(&found)?;
                 Ok(Verdict::Unstable(found))
             }
+        }
+    }
+}
+
+impl CertificateFile {
+    /// A proof that is larger than any that is written would take a time that nobody waits.
+    fn check_size(&self) -> Result<(), InvalidCertificate> {
+        let too_large = |what: &str| Err(InvalidCertificate::Proof(format!("has more than {what}")));
+        match &self.proof {
+            ProofFile::Stable { forms, .. } if forms.len() > MOST_FORMS => too_large(&format!("{MOST_FORMS} forms")),
+            ProofFile::Stable { edges, .. } if edges.len() > MOST_EDGES => too_large(&format!("{MOST_EDGES} edges")),
+            ProofFile::Unstable { word, .. } if word.len() > LONGEST_WORD => {
+                too_large(&format!("{LONGEST_WORD} letters"))
+            }
+            _ => Ok(()),
         }
     }
 }

@@ -4,10 +4,12 @@
 //! is said of a case without a file, and that files are judged as messages are.
 
 use super::csv;
+use super::invalid::shortened;
 use super::problem::ProblemFile;
 use super::process::read_answer;
 use super::subject::{Answer, Broken, Ready, Subject};
 use super::trace::read_json;
+use crate::file;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -20,16 +22,14 @@ pub struct Folder {
 
 /// Reads a file of bounded size; none if there is no such file.
 fn read_file(path: &Path) -> Result<Option<String>, Broken> {
-    const GREATEST: u64 = 1 << 28;
     let wrong = |reason: String| Broken::NotStarted(format!("{}: {reason}", path.display()));
     match std::fs::metadata(path) {
         Err(_) => return Ok(None),
-        Ok(metadata) if metadata.len() > GREATEST => return Err(wrong(format!("is larger than {GREATEST} bytes"))),
+        // A pipe would be waited for without an end.
+        Ok(metadata) if !metadata.is_file() => return Err(wrong("is not a file".into())),
         Ok(_) => {}
     }
-    std::fs::read_to_string(path)
-        .map(Some)
-        .map_err(|error| wrong(error.to_string()))
+    file::read(path).map(Some).map_err(|error| wrong(error.to_string()))
 }
 
 impl Subject for Folder {
@@ -65,7 +65,7 @@ impl Folder {
             return match message.get("id").and_then(Value::as_str) {
                 Some(id) if id != problem.id => Err(Broken::OutOfOrder {
                     asked: problem.id.clone(),
-                    answered: id.to_owned(),
+                    answered: shortened(id, 100),
                 }),
                 _ => read_answer(&message, dimensions),
             };

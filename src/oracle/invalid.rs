@@ -71,12 +71,23 @@ pub struct Invalid {
 }
 
 impl Invalid {
-    /// A refusal.
+    /// A refusal. What it quotes of the file is shortened: a name may be megabytes long.
     pub fn new(class: Class, place: impl Into<String>, reason: impl Into<String>) -> Self {
+        const KEPT: usize = 500;
         Self {
             class,
-            place: place.into(),
-            reason: reason.into(),
+            place: shortened(&place.into(), KEPT),
+            reason: shortened(&reason.into(), KEPT),
         }
     }
+}
+
+/// A text of at most so many characters: of a longer one its beginning and its end, between which an ellipsis stands.
+pub fn shortened(text: &str, kept: usize) -> String {
+    if text.chars().nth(kept).is_none() {
+        return text.to_owned();
+    }
+    let start = text.char_indices().nth(kept / 2).map_or(0, |(place, _)| place);
+    let end = text.char_indices().rev().nth(kept / 2).map_or(0, |(place, _)| place);
+    format!("{}…{}", &text[..start], &text[end..])
 }

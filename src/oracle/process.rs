@@ -3,12 +3,14 @@
 //! After this file the reader knows how a program that hangs, ends, floods or answers out of order is noticed. Reading and writing
 //! happen in threads of their own, so that nothing the program does can block the check.
 
+use super::invalid;
 use super::problem::ProblemFile;
 use super::subject::{Answer, Broken, ECHO, Ready, Subject};
 use super::trace::{Dimensions, Trace, read_json};
+use crate::file::{LONGEST_LINE, read_line};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
-use std::io::{BufRead, BufReader, Read, Write};
+use std::io::{BufReader, ErrorKind, Read, Write};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, SyncSender, channel, sync_channel};
 use std::sync::{Arc, Mutex};
@@ -17,11 +19,11 @@ use std::time::{Duration, Instant};
 /// The protocol's name.
 pub const PROTOCOL: &str = "immaculate-check/1";
 
-/// No line of an answer may be longer, in bytes.
-const LONGEST_LINE: u64 = 1 << 26;
-
 /// So many lines wait to be read; a program that writes more is held up, so that it fills no memory.
 const WAITING: usize = 4;
+
+/// So much of the reason that a program gives is kept, characters.
+const REASON_KEPT: usize = 500;
 
 /// So many remarks are kept.
 const REMARKS: usize = 100;
@@ -248,7 +250,7 @@ impl Process {
             if id != problem.id {
                 return Err(Broken::OutOfOrder {
                     asked: problem.id.clone(),
-                    answered: id,
+                    answered: shortened(&id),
                 });
             }
             return read_answer(&message, problem.dimensions());
@@ -318,12 +320,17 @@ pub fn read_answer(message: &Value, dimensions: Dimensions) -> Result<Answer, Br
             reason: "an answer is an object".into(),
         });
     }
-    let text = |key: &str| message.get(key).and_then(Value::as_str).unwrap_or_default().to_owned();
+    let text = |key: &str| {
+        invalid::shortened(
+            message.get(key).and_then(Value::as_str).unwrap_or_default(),
+            REASON_KEPT,
+        )
+    };
     match message.get("type").and_then(Value::as_str) {
         Some("answer") | None => {
             for key in message.as_object().into_iter().flat_map(|object| object.keys()) {
                 if !["type", "id", "format", "steps", "error", "scale", "noise"].contains(&key.as_str()) {
-                    let reason = format!("`{key}` is not a key of an answer");
+                    let reason = format!("`{}` is not a key of an answer", shortened(key));
                     let line = shortened(&message.to_string());
                     return Err(Broken::Garbage { line, reason });
                 }
@@ -341,7 +348,7 @@ pub fn read_answer(message: &Value, dimensions: Dimensions) -> Result<Answer, Br
         }),
         Some(other) => Err(Broken::Garbage {
             line: shortened(&message.to_string()),
-            reason: format!("{other:?} is not the type of an answer"),
+            reason: format!("{:?} is not the type of an answer", shortened(other)),
         }),
     }
 }
@@ -350,7 +357,7 @@ pub fn read_answer(message: &Value, dimensions: Dimensions) -> Result<Answer, Br
 fn error_of(value: Option<&Value>) -> Option<String> {
     match value? {
         Value::Null | Value::Bool(false) => None,
-        Value::String(text) => (!text.trim().is_empty()).then(|| text.clone()),
+        Value::String(text) => (!text.trim().is_empty()).then(|| invalid::shortened(text, REASON_KEPT)),
         Value::Array(list) if list.is_empty() => None,
         Value::Object(object) if object.is_empty() => None,
         other => Some(shortened(&other.to_string())),
@@ -360,11 +367,10 @@ fn error_of(value: Option<&Value>) -> Option<String> {
 fn read_lines(stdout: impl Read, lines: &SyncSender<Line>) {
     let mut reader = BufReader::new(stdout);
     loop {
-        let mut bytes = Vec::new();
-        let line = match reader.by_ref().take(LONGEST_LINE).read_until(b'\n', &mut bytes) {
-            Ok(0) | Err(_) => return,
-            Ok(length) if length as u64 == LONGEST_LINE => Line::TooLong,
-            Ok(_) => String::from_utf8(bytes).map_or_else(|error| not_text(error.as_bytes()), Line::Text),
+        let line = match read_line(&mut reader) {
+            Ok(Some(bytes)) => String::from_utf8(bytes).map_or_else(|error| not_text(error.as_bytes()), Line::Text),
+            Err(error) if error.kind() == ErrorKind::FileTooLarge => Line::TooLong,
+            Ok(None) | Err(_) => return,
         };
         if lines.send(line).is_err() {
             return;

@@ -81,12 +81,18 @@ impl ProblemFile {
 
     /// The rule in doubles. It is computed once and kept: a search asks for it thousands of times.
     fn rule_in_doubles<const N: usize>(&self) -> Result<Option<Rule<f64, N>>, Invalid> {
+        if !matches!(self.filter, FilterFile::Cubature { .. } | FilterFile::Unscented { .. }) {
+            return Ok(None);
+        }
         let name = format!("{:?} {N}", self.filter);
         let mut rules = RULES.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(columns) = rules.get(&name) {
             return Ok(columns.as_ref().map(of_columns));
         }
         let rule = self.rule(|value| value)?;
+        if rules.len() >= RULES_KEPT {
+            rules.clear();
+        }
         rules.insert(name, rule.as_ref().map(as_columns));
         Ok(rule)
     }
@@ -216,6 +222,9 @@ type Columns = (Vec<Vec<f64>>, Vec<f64>, Vec<f64>);
 
 /// The rules in doubles that were asked for, by filter and dimension.
 static RULES: Mutex<BTreeMap<String, Option<Columns>>> = Mutex::new(BTreeMap::new());
+
+/// So many rules are kept; every α, β and κ is another, and a program that answers for days may see any number of them.
+const RULES_KEPT: usize = 100;
 
 fn as_columns<const N: usize>(rule: &Rule<f64, N>) -> Columns {
     let points = rule.points.iter().map(|point| point.as_slice().to_vec()).collect();

@@ -3,7 +3,7 @@
 //! After this file the reader knows the trait by which a filter in Rust is checked from its own tests; a process
 //! ([`super::process`]) and a folder of answers ([`super::folder`]) implement the same.
 
-use super::invalid::Invalid;
+use super::invalid::{Invalid, shortened};
 use super::problem::ProblemFile;
 use super::run::Computed;
 use super::setup::Setup;
@@ -108,10 +108,7 @@ impl Ready {
             match key.as_str() {
                 _ if value.is_null() => {}
                 "type" | "fields" => {}
-                "name" => value
-                    .as_str()
-                    .ok_or("`name` is not a string")?
-                    .clone_into(&mut ready.name),
+                "name" => ready.name = shortened(value.as_str().ok_or("`name` is not a string")?, 200),
                 "precision" => ready.precision = read_precision(value)?,
                 "conventions" => ready.conventions = read_conventions(value)?,
                 "kinds" => {

@@ -24,6 +24,23 @@ pub struct Dimensions {
     pub steps: usize,
 }
 
+impl Dimensions {
+    /// The numbers of a trace in which everything is shown.
+    pub fn numbers(self) -> usize {
+        let Self { n, m, r, steps } = self;
+        let of_quantity = |quantity: Quantity| {
+            let (rows, columns) = quantity.shape(n, m, r);
+            let modes = if quantity.is_of_mode() { r } else { 1 };
+            rows.saturating_mul(columns).saturating_mul(modes)
+        };
+        let of_step = Quantity::ALL
+            .map(of_quantity)
+            .into_iter()
+            .fold(0, usize::saturating_add);
+        steps.saturating_mul(of_step)
+    }
+}
+
 /// One value for each step, quantity and mode, where there is one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table<V> {

@@ -25,6 +25,7 @@ impl ProblemFile {
         }
         self.check_conventions()?;
         self.check_shapes()?;
+        check_size(self.dimensions())?;
         self.check_filter()?;
         self.check_measurements()?;
         shape::dispatch(self.state.len(), self.noise.len(), TypedCheck(self))?
@@ -184,6 +185,21 @@ impl ProblemFile {
         }
         Ok(())
     }
+}
+
+/// A trace is held in memory as a whole: so many numbers take about a gigabyte while they are written.
+const MOST_NUMBERS: usize = 10_000_000;
+
+fn check_size(dimensions: Dimensions) -> Result<(), Invalid> {
+    let numbers = dimensions.numbers();
+    if numbers <= MOST_NUMBERS {
+        return Ok(());
+    }
+    let reason = format!(
+        "has {} steps, and their trace {numbers} numbers; this program is built for at most {MOST_NUMBERS}",
+        dimensions.steps
+    );
+    Err(Invalid::new(Class::Shape, "problem.measurements", reason))
 }
 
 /// Puts a problem into doubles and lets the cycle check it.

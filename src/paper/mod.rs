@@ -64,6 +64,9 @@ pub struct Effort {
     pub seed: u64,
 }
 
+/// The most runs of a simulation. All are kept until its figures are computed, 41 to 82 kB a run (measured): four gigabytes at most.
+pub const MOST_RUNS: usize = 50_000;
+
 impl Paper {
     /// All papers, in the order of their years.
     pub const ALL: [Self; 4] = [Self::Derbez2000, Self::Sustika2015, Self::Zhu2016, Self::Liu2017];
@@ -187,6 +190,17 @@ impl Paper {
             }
             Self::Zhu2016 => zhu2016::quantity_of_row(row).map(Figure::Error),
             Self::Liu2017 => liu2017::quantity_of_row(row).map(Figure::Error),
+        }
+    }
+
+    /// The most runs with which the claims can be judged. The judges keep the runs of several scenarios in memory, and with so many they
+    /// need four to five gigabytes: 2.4 MB for a run of each scenario of derbez2000, 2.1 MB of liu2017, 0.3 MB of zhu2016 and 4 kB of
+    /// sustika2015 (measured).
+    pub fn most_judged_runs(self) -> usize {
+        match self {
+            Self::Derbez2000 | Self::Liu2017 => 2_000,
+            Self::Zhu2016 => 15_000,
+            Self::Sustika2015 => MOST_RUNS,
         }
     }
 

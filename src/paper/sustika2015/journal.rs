@@ -15,10 +15,11 @@
 //! else that is not as it would have been written is refused, in a sentence that names the file and what is wrong with it.
 
 use super::sweep::{Fit, Point, Setting};
+use crate::file;
 use crate::statistics::Estimate;
 use std::fmt::Write as _;
-use std::fs::{File, OpenOptions};
-use std::io::{Read, Seek, SeekFrom, Write as _};
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{Error, Read, Seek, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
 
 /// The format's name and version.
@@ -109,7 +110,7 @@ impl Journal {
     /// [`BadJournal`] when the file cannot be read or written, or is not a journal of this sweep.
     pub fn open(path: &Path, header: &Header, settings: &[Setting]) -> Result<(Self, Vec<Point>), BadJournal> {
         let name = path.display().to_string();
-        let failed = |error: std::io::Error| failed(path, &error);
+        let failed = |error: Error| failed(path, &error);
         let mut options = OpenOptions::new();
         let mut file = options
             .read(true)
@@ -118,8 +119,19 @@ impl Journal {
             .truncate(false)
             .open(path)
             .map_err(failed)?;
+        // Two sweeps that write by turns would spoil it for both.
+        file.try_lock().map_err(|error| match error {
+            TryLockError::WouldBlock => failed(Error::other("another sweep is writing this journal")),
+            TryLockError::Error(error) => failed(error),
+        })?;
         let mut bytes = Vec::new();
-        file.read_to_end(&mut bytes).map_err(failed)?;
+        (&file)
+            .take(file::LONGEST_FILE)
+            .read_to_end(&mut bytes)
+            .map_err(failed)?;
+        if bytes.len() as u64 == file::LONGEST_FILE {
+            return Err(BadJournal::NoJournal { file: name });
+        }
         let head = format!("{}\n{}\n", header.line(), columns());
         if head.as_bytes().starts_with(&bytes) {
             // Nothing yet, or a beginning that was torn.
@@ -165,7 +177,7 @@ impl Journal {
     }
 }
 
-fn failed(path: &Path, error: &std::io::Error) -> BadJournal {
+fn failed(path: &Path, error: &Error) -> BadJournal {
     BadJournal::File {
         file: path.display().to_string(),
         cause: error.to_string(),
@@ -181,7 +193,9 @@ fn read(file: &str, text: &str, header: &Header, settings: &[Setting]) -> Result
         line,
         cause,
     };
-    if let Some(names) = lines.next().filter(|names| *names != columns()) {
+    // A beginning that was torn is none of ours to be read: it was dropped before.
+    let names = lines.next().unwrap_or_default();
+    if names != columns() {
         return Err(bad(2, format!("the columns are `{names}` and not `{}`", columns())));
     }
     let mut points = Vec::new();
@@ -282,7 +296,8 @@ fn parse(line: &str, setting: &Setting) -> Result<Point, String> {
         plain_less_converted: fields.estimate()?,
     };
     match fields.0.next() {
-        None => Ok(point),
+        None if self::line(setting, &point) == line => Ok(point),
+        None => Err("a number is not as this program writes it".to_owned()),
         Some(field) => Err(format!("`{field}` comes after the last column")),
     }
 }

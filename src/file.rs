@@ -1,0 +1,111 @@
+//! Files: read within a bound, and written whole or not at all.
+//!
+//! After this file the reader knows what the program promises of every file that it reads or writes, whatever happens meanwhile. What is
+//! read has a greatest length, so that no file and no pipe without an end fills the memory. What is written stands in a temporary file
+//! beside its place until all of it is on the disk, and takes its place in one step, so that whoever looks finds the old file or the new
+//! one, and after an interruption, too. The journal of a sweep is the one exception: it grows line by line and has its own promises.
+
+use std::fs::{self, File};
+use std::io::{self, BufRead, ErrorKind, Read, Write};
+use std::path::Path;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+/// No file that is read may be longer, in bytes: 32 MiB. What JSON becomes in memory is up to 32 times as large.
+pub const LONGEST_FILE: u64 = 1 << 25;
+
+/// No line of the protocol may be longer, in bytes: 16 MiB, a hundred times the longest answer to a published case.
+pub const LONGEST_LINE: u64 = 1 << 24;
+
+/// The text of a file, if it is not longer than [`LONGEST_FILE`].
+///
+/// # Errors
+///
+/// As [`read_from`]; and when there is no such file, or it cannot be read.
+pub fn read(path: &Path) -> io::Result<String> {
+    read_from(File::open(path)?)
+}
+
+/// The text that a reader gives, if it is not longer than [`LONGEST_FILE`]; without the mark of byte order that it may start with.
+///
+/// # Errors
+///
+/// When it is longer or not UTF-8, or the reader fails.
+pub fn read_from(reader: impl Read) -> io::Result<String> {
+    let mut text = String::new();
+    reader.take(LONGEST_FILE + 1).read_to_string(&mut text)?;
+    if text.len() as u64 > LONGEST_FILE {
+        return Err(too_long("is longer", LONGEST_FILE));
+    }
+    // Some editors mark their text as UTF-8.
+    Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
+}
+
+/// The next line with its end, if it is not longer than [`LONGEST_LINE`]; none after the last.
+///
+/// # Errors
+///
+/// When it is longer, or the reader fails.
+pub fn read_line(reader: &mut impl BufRead) -> io::Result<Option<Vec<u8>>> {
+    let mut line = Vec::new();
+    let length = reader.take(LONGEST_LINE + 1).read_until(b'\n', &mut line)?;
+    if length as u64 > LONGEST_LINE {
+        return Err(too_long("a line longer", LONGEST_LINE));
+    }
+    Ok((length > 0).then_some(line))
+}
+
+fn too_long(what: &str, bytes: u64) -> io::Error {
+    io::Error::new(ErrorKind::FileTooLarge, format!("{what} than {bytes} bytes"))
+}
+
+/// Writes a file whole or not at all: what was there stays until all is on the disk.
+///
+/// - The temporary file is `.immaculate-PROCESS-NUMBER.part` in the same directory. It is removed when it cannot be written; a process
+///   that is killed leaves it, and it may be deleted.
+/// - Behind a symbolic link the file that it leads to is replaced, and the link stays; a link that leads nowhere is replaced itself.
+/// - Permissions of an old file are kept, a new one has the usual ones. A file that is read-only is not replaced. Hard links to an old
+///   file keep the old content.
+/// - What is no file, a device or a pipe, has no content to be kept, and is written to as it is.
+///
+/// # Errors
+///
+/// When the file cannot be written; then the old one is as it was.
+pub fn write(path: &Path, content: &str) -> io::Result<()> {
+    let path = &path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    let old = fs::metadata(path).ok();
+    match &old {
+        Some(old) if old.is_dir() => return Err(ErrorKind::IsADirectory.into()),
+        Some(old) if !old.is_file() => {
+            return File::options().write(true).open(path)?.write_all(content.as_bytes());
+        }
+        Some(old) if old.permissions().readonly() => {
+            return Err(io::Error::new(ErrorKind::PermissionDenied, "is read-only"));
+        }
+        _ => {}
+    }
+    let part = &path.with_file_name(temporary_name());
+    let permissions = old.as_ref().map(fs::Metadata::permissions);
+    write_new(part, content, permissions)
+        .and_then(|()| fs::rename(part, path))
+        .inspect_err(|_| {
+            // What was written of it is of no use; where nothing was written there is nothing to remove.
+            let _ = fs::remove_file(part);
+        })
+}
+
+/// A name that no other file has while this process writes: of this process, and each time another.
+fn temporary_name() -> String {
+    static NUMBER: AtomicU32 = AtomicU32::new(0);
+    let number = NUMBER.fetch_add(1, Ordering::Relaxed);
+    format!(".immaculate-{}-{number}.part", std::process::id())
+}
+
+/// Writes a file down to the disk.
+fn write_new(path: &Path, content: &str, permissions: Option<fs::Permissions>) -> io::Result<()> {
+    let mut file = File::create(path)?;
+    file.write_all(content.as_bytes())?;
+    if let Some(permissions) = permissions {
+        file.set_permissions(permissions)?;
+    }
+    file.sync_all()
+}
