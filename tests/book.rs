@@ -7,9 +7,8 @@
 
 use immaculate::book::doc::{Doc, PartKind};
 use immaculate::book::find::find;
-use immaculate::book::reference::Reference;
 use immaculate::book::source::{File, items_of, source_files, test_files};
-use immaculate::book::{Entry, entries, html, markup, realisations};
+use immaculate::book::{Entry, entries, entries_of, html, markup, realisations};
 use immaculate::imm::Quantity;
 use immaculate::oracle::variant::{Kind, catalogue};
 use immaculate::oracle::{case, problem::ProblemFile};
@@ -201,14 +200,24 @@ fn every_equation_has_a_section_and_every_link_leads_somewhere() {
 }
 
 #[test]
-fn the_code_of_an_item_stands_once_a_paper() {
+fn the_code_of_an_item_stands_once_in_a_paper() {
     for realisation in realisations() {
+        // Where the index leads.
         let id = format!("id=\"{}\"", realisation.item.anchor());
         assert_eq!(BOOK.matches(&id).count(), 1, "{id}");
     }
-    let papers = |realises: &[Reference]| realises.iter().map(|of| of.paper).collect::<BTreeSet<_>>().len();
-    let places: usize = realisations().iter().map(|of| papers(&of.doc.realises)).sum();
-    assert_eq!(BOOK.matches("class=\"source-code\"").count(), places);
+    for paper in Paper::ALL {
+        let of_paper: BTreeSet<String> = entries_of(paper)
+            .flat_map(|entry| entry.realisations.iter().map(|one| one.item.anchor()))
+            .collect();
+        let chapter = html::chapter(paper).into_string();
+        assert_eq!(
+            chapter.matches("class=\"source-code\"").count(),
+            of_paper.len(),
+            "{}",
+            paper.key()
+        );
+    }
 }
 
 #[test]

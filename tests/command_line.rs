@@ -713,3 +713,19 @@ fn remove_times(value: &mut Value) -> usize {
         _ => 0,
     }
 }
+
+#[test]
+fn a_report_that_could_not_be_written_is_refused_before_it_is_computed() {
+    let directory = env!("CARGO_TARGET_TMPDIR");
+    let missing = format!("{directory}/nowhere/page.html");
+    for (path, reason) in [
+        (missing.as_str(), "its directory does not exist"),
+        (directory, "is a directory"),
+    ] {
+        // With the papers' numbers of runs: were they run, this would take minutes.
+        let output = immaculate(&["report", "--out", path]).output().unwrap();
+        assert_eq!(output.status.code(), Some(1), "{path}");
+        let complaint = String::from_utf8(output.stderr).unwrap();
+        assert!(complaint.contains(path) && complaint.contains(reason), "{complaint}");
+    }
+}

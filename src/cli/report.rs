@@ -8,7 +8,7 @@ use immaculate::paper::Paper;
 use immaculate::report::page;
 use immaculate::report::page::content::{Content, Extent, Watch};
 use indicatif::{ProgressBar, ProgressStyle};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Writes one HTML page: the papers' figures and tables, their claims with verdict and evidence, their errata, and the book of equations.
 /// It needs no network to be read. With the papers' numbers of runs it takes some minutes.
@@ -35,6 +35,7 @@ pub fn run(arguments: &Report) -> Result<Done, Refusal> {
         map_points: MAP_POINTS,
     };
     check_that_memory_does(&Paper::ALL, extent.effort)?;
+    check_that_a_file_can_be_there(&arguments.out)?;
     let bar = ProgressBar::new(0);
     let watch = Watch {
         begin: &|step, length| begin(&bar, step, length),
@@ -45,6 +46,19 @@ pub fn run(arguments: &Report) -> Result<Done, Refusal> {
     let page = page::html(&content).map_err(|error| Refusal::Output(error.to_string()))?;
     write_file(&arguments.out, &page)?;
     Ok(format!("{}: {} kB\n", arguments.out.display(), page.len() / 1000).into())
+}
+
+/// Minutes of computing should not end with a directory that is missing.
+fn check_that_a_file_can_be_there(path: &Path) -> Result<(), Refusal> {
+    let directory = path.parent().filter(|directory| *directory != Path::new(""));
+    let wrong = if path.is_dir() {
+        "is a directory, not a file"
+    } else if directory.is_some_and(|directory| !directory.is_dir()) {
+        "its directory does not exist"
+    } else {
+        return Ok(());
+    };
+    Err(Refusal::Output(format!("{}: {wrong}", path.display())))
 }
 
 /// A new step, and its length where that is known before.
