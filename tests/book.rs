@@ -380,6 +380,7 @@ fn links_lead_to_the_code_that_they_name_or_are_names() {
         html("[`nothing_of_this`] and [x](super::nothing)"),
         "<code>nothing_of_this</code> and x"
     );
+    assert_eq!(html("G = [t²/2, t, 1]ᵀ"), "G = [t²/2, t, 1]ᵀ");
     assert_eq!(html("a < b, Vec<T>"), "a &lt; b, Vec&lt;T&gt;");
     assert_eq!(markup::plain("[`mixture_mean`] of\n`x`", item), "mixture_mean of x");
 }

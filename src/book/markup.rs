@@ -130,8 +130,11 @@ fn rendered<'a>(events: impl Iterator<Item = Event<'a>>) -> Markup {
 
 /// The markdown of an item, its links resolved.
 fn events<'a>(markdown: &'a str, of: &Item) -> Vec<Event<'a>> {
-    // A name in brackets is a link to the item of that name.
-    let shortcut = |link: BrokenLink<'a>| Some((link.reference, CowStr::Borrowed("")));
+    // A name in backticks and brackets is a link to the item of that name; anything else in brackets is a vector.
+    let shortcut = |link: BrokenLink<'a>| {
+        let is_name = link.reference.starts_with('`');
+        is_name.then(|| (link.reference, CowStr::Borrowed("")))
+    };
     let parser = Parser::new_with_broken_link_callback(markdown, Options::ENABLE_TABLES, Some(shortcut));
     let mut is_link = Vec::new();
     let mut events = Vec::new();
