@@ -49,8 +49,8 @@ pub struct Mode<T, const N: usize> {
 impl<T: Field, const N: usize> Mode<T, N> {
     /// Whether the motion has no such entry of the state — sustika2015 (padding).
     ///
-    /// It sets it to zero, without noise, and knows it exactly ever after. That is how models of unequal dimensions share one state, constant
-    /// velocity and constant acceleration for instance.
+    /// It sets it to zero, without noise, and knows it exactly ever after. That is how models of unequal dimensions share one state,
+    /// constant velocity and constant acceleration for instance.
     ///
     /// Source: derbez2000 (5), where the last row of F is zero.
     ///

@@ -194,8 +194,8 @@ impl Paper {
     }
 
     /// The most runs with which the claims can be judged. The judges keep the runs of several scenarios in memory, and with so many they
-    /// need four to five gigabytes: 2.4 MB for a run of each scenario of derbez2000, 2.1 MB of liu2017, 0.3 MB of zhu2016 and 4 kB of
-    /// sustika2015 (measured).
+    /// need four to five gigabytes: 2.4 MB, measured, for a run of each scenario of derbez2000, 2.1 MB of liu2017, 0.3 MB of zhu2016 and
+    /// 4 kB of sustika2015.
     pub fn most_judged_runs(self) -> usize {
         match self {
             Self::Derbez2000 | Self::Liu2017 => 2_000,
