@@ -70,7 +70,7 @@
 //! | [`oracle`]     | certified cases, traces, and the judge of other filters                            | the cycle        |
 //! | [`book`]       | every equation with its code, derivation, errata, tests, mistakes and cases        | all above        |
 //! | [`report`]     | what is printed                                                                    | all above        |
-//! | [`file`]       | reading within a bound, writing whole or not at all                                | nothing          |
+//! | [`mod@file`]   | reading within a bound, writing whole or not at all                                | nothing          |
 //!
 //! Arrows run downwards: numbers know nothing, equations know numbers and matrices. Equations, filters and the cycle read no files, draw no
 //! random numbers and print nothing. Whoever wants the filter alone reads [`gaussian`], [`filter`] and [`imm`], in that order.

@@ -133,7 +133,7 @@ fn events<'a>(markdown: &'a str, of: &Item) -> Vec<Event<'a>> {
     // A name in backticks and brackets is a link to the item of that name; anything else in brackets is a vector.
     let shortcut = |link: BrokenLink<'a>| {
         let is_name = link.reference.starts_with('`');
-        is_name.then(|| (link.reference, CowStr::Borrowed("")))
+        is_name.then_some((link.reference, CowStr::Borrowed("")))
     };
     let parser = Parser::new_with_broken_link_callback(markdown, Options::ENABLE_TABLES, Some(shortcut));
     let mut is_link = Vec::new();
