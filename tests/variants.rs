@@ -4,6 +4,7 @@
 //! variant is run in doubles beside the filter itself on small problems with generic numbers, on which no two terms are alike by chance,
 //! and the first value that differs must be of the quantity that its row names. Kind of evidence: oracle.
 
+use immaculate::filter::converted::{converted_covariance, polar_position};
 use immaculate::filter::fixed_gain::FixedGain;
 use immaculate::gaussian::Gaussian;
 use immaculate::imm::{Equations, Initial, Problem, Quantity, Scope};
@@ -279,6 +280,47 @@ fn every_square_root_gives_the_same_filter_on_a_linear_problem() {
         let found = varied(setup.clone(), &[id]).run().values;
         assert_eq!(first_change(&expected, &found, ROUNDING), None, "{id}");
         assert_eq!(expected.count(), found.count());
+    }
+}
+
+/// Where nothing was measured, the noise that a converting filter would have used is known only where it expected the measurement: at the
+/// combined prediction. By P⁻ − P⁻ Hᵀ (H P⁻ Hᵀ + R^c)⁻¹ H P⁻ on the run's own values, with nalgebra's inverse.
+#[test]
+fn a_covariance_updated_without_a_detection_uses_the_converted_noise_at_the_prediction() {
+    let setup = varied(
+        converted(Conversion::Standard),
+        &["missed-detection-updates-the-covariance"],
+    );
+    let step = 1 + setup.measurements.iter().position(Option::is_none).unwrap();
+    let run = setup.run().values;
+    let Problem {
+        measurement,
+        measurement_noise,
+        ..
+    } = &setup.problem;
+    let prediction = run.get(step, Quantity::CombinedPredictionMean, 0).unwrap();
+    let at = polar_position(measurement, &SVector::from_column_slice(prediction));
+    let (h, noise) = (
+        measurement.matrix(),
+        converted_covariance(measurement, &at, measurement_noise),
+    );
+    for j in 0..setup.problem.modes.len() {
+        let of_mode = |quantity| SMatrix::<f64, 4, 4>::from_row_slice(run.get(step, quantity, j).unwrap());
+        let predicted = of_mode(Quantity::PredictedCovariance);
+        let gain = predicted * h.transpose() * (h * predicted * h.transpose() + noise).try_inverse().unwrap();
+        let expected = predicted - gain * h * predicted;
+        let found = of_mode(Quantity::UpdatedCovariance);
+        assert!(
+            (found - expected).amax() < ROUNDING * predicted.amax(),
+            "mode {j}: {found} {expected}"
+        );
+        // R itself, in metres and radians, is another noise.
+        let gain = predicted
+            * h.transpose()
+            * (h * predicted * h.transpose() + measurement_noise)
+                .try_inverse()
+                .unwrap();
+        assert!((found - (predicted - gain * h * predicted)).amax() > CHANGE * predicted.amax());
     }
 }
 

@@ -2,8 +2,8 @@
 //!
 //! ```text
 //! mutation prepare TREE WORK     all mutants into a copy of the tree; what the compiler refuses is set aside
-//! mutation trace WORK            each test once: how long it takes, and which mutants it reaches
-//! mutation run WORK ROOM SECONDS each mutant of a room against the tests that reach it, the likeliest first
+//! mutation trace WORK SECONDS    each test once, stopped after so long: how long it takes, and which mutants it reaches
+//! mutation run WORK ROOM SECONDS each mutant of a room against the tests that reach it, the likeliest first, so long in all
 //! mutation table WORK            the score of each room, and what survived
 //! ```
 //!
@@ -27,13 +27,10 @@ fn main() -> ExitCode {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let done = match words[..] {
         ["prepare", tree, work] => prepare::prepare(Path::new(tree), Path::new(work)),
-        ["trace", work] => trace::trace(Path::new(work)),
-        ["run", work, room, seconds] => match seconds.parse() {
-            Ok(seconds) => run::run(Path::new(work), room, seconds),
-            Err(_) => Err(format!("{seconds} is not a number of seconds")),
-        },
+        ["trace", work, seconds] => number(seconds).and_then(|seconds| trace::trace(Path::new(work), seconds)),
+        ["run", work, room, seconds] => number(seconds).and_then(|seconds| run::run(Path::new(work), room, seconds)),
         ["table", work] => table::table(Path::new(work)),
-        _ => Err("prepare TREE WORK | trace WORK | run WORK ROOM SECONDS | table WORK".into()),
+        _ => Err("prepare TREE WORK | trace WORK SECONDS | run WORK ROOM SECONDS | table WORK".into()),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
@@ -42,6 +39,10 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+fn number(text: &str) -> Result<f64, String> {
+    text.parse().map_err(|_| format!("{text} is not a number of seconds"))
 }
 
 fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, String> {

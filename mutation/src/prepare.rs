@@ -42,10 +42,9 @@ pub fn prepare(tree: &Path, work: &Path) -> Result<(), String> {
 
 fn copy_tree(tree: &Path, copy: &Path) -> Result<(), String> {
     let files = Command::new("git").args(["ls-files"]).current_dir(tree).output().map_err(|error| error.to_string())?;
-    for file in String::from_utf8_lossy(&files.stdout).lines() {
+    for file in String::from_utf8_lossy(&files.stdout).lines().filter(|file| *file != "Cargo.toml") {
         let to = copy.join(file);
-        std::fs::create_dir_all(to.parent().unwrap_or(copy)).map_err(|error| error.to_string())?;
-        std::fs::copy(tree.join(file), &to).map_err(|error| format!("{file}: {error}"))?;
+        write(&to, &std::fs::read(tree.join(file)).map_err(|error| format!("{file}: {error}"))?)?;
     }
     let manifest = std::fs::read_to_string(tree.join("Cargo.toml")).map_err(|error| error.to_string())?;
     let mut manifest: toml::Table = manifest.parse().map_err(|error| format!("Cargo.toml: {error}"))?;
@@ -56,7 +55,16 @@ fn copy_tree(tree: &Path, copy: &Path) -> Result<(), String> {
     );
     let changes: toml::Table = text.parse().map_err(|error| format!("the change: {error}"))?;
     manifest.extend(changes);
-    std::fs::write(copy.join("Cargo.toml"), manifest.to_string()).map_err(|error| error.to_string())
+    write(&copy.join("Cargo.toml"), manifest.to_string().as_bytes())
+}
+
+/// Writes a file if it is another one, so that what did not change is not built again.
+fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
+    if std::fs::read(path).is_ok_and(|old| old == bytes) {
+        return Ok(());
+    }
+    let done = std::fs::create_dir_all(path.parent().unwrap_or(path)).and_then(|()| std::fs::write(path, bytes));
+    done.map_err(|error| format!("{}: {error}", path.display()))
 }
 
 fn write_sources(
@@ -82,12 +90,11 @@ fn write_sources(
     for path in paths {
         let name = path.strip_prefix(tree).map_err(|error| error.to_string())?.display().to_string();
         let to = copy.join(name.replacen("src", SOURCES, 1));
-        std::fs::create_dir_all(to.parent().unwrap_or(copy)).map_err(|error| error.to_string())?;
+        let text = std::fs::read_to_string(&path).map_err(|error| format!("{name}: {error}"))?;
         if path.extension().is_none_or(|extension| extension != "rs") {
-            std::fs::copy(&path, &to).map_err(|error| error.to_string())?;
+            write(&to, text.as_bytes())?;
             continue;
         }
-        let text = std::fs::read_to_string(&path).map_err(|error| error.to_string())?;
         let syntax = syn::parse_file(&text).map_err(|error| format!("{name}: {error}"))?;
         let of_file = by_file.get(name.as_str()).map_or(&[][..], |list| list.as_slice());
         let next = mutants.last().map_or(0, |mutant: &Mutant| mutant.id);
@@ -98,10 +105,9 @@ fn write_sources(
         if name == "src/lib.rs" {
             text.push_str("\npub mod chosen;\nextern crate self as immaculate;\n");
         }
-        std::fs::write(&to, text).map_err(|error| error.to_string())?;
+        write(&to, text.as_bytes())?;
     }
-    std::fs::write(copy.join(SOURCES).join("chosen.rs"), include_str!("chosen.rs"))
-        .map_err(|error| error.to_string())?;
+    write(&copy.join(SOURCES).join("chosen.rs"), include_bytes!("chosen.rs"))?;
     Ok(mutants)
 }
 

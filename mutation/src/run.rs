@@ -4,7 +4,7 @@
 //! sample; tests by the mutants of the same file that they have caught for each second, so that the likeliest comes first.
 
 use crate::mutant::{self, Build, Mutant};
-use crate::trace::{self, End, Test};
+use crate::trace::{self, End, Test, Traced};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::io::Write;
@@ -41,7 +41,7 @@ const STEP: usize = 16;
 /// Runs the mutants of a room that have no verdict yet, or one that is open, with so many seconds of tests for each.
 pub fn run(work: &Path, room: &str, seconds: f64) -> Result<(), String> {
     let mutants: Vec<Mutant> = crate::read_json(&work.join("mutants.json"))?;
-    let tests: Vec<Test> = crate::read_json(&work.join("tests.json"))?;
+    let Traced { tests, too_slow, .. } = crate::read_json(&work.join("tests.json"))?;
     let path = work.join(format!("results-{room}.jsonl"));
     let mut verdicts = read(&path);
     let mut skill: HashMap<(String, usize), (f64, f64)> = HashMap::new();
@@ -58,7 +58,10 @@ pub fn run(work: &Path, room: &str, seconds: f64) -> Result<(), String> {
             continue;
         }
         let passed = known.map(|verdict| verdict.passed.clone()).unwrap_or_default();
-        let verdict = judge(&work.join("tree"), mutant, &tests, passed, seconds, &mut skill)?;
+        let mut verdict = judge(&work.join("tree"), mutant, &tests, passed, seconds, &mut skill)?;
+        if !too_slow.is_empty() && matches!(verdict.outcome, Outcome::Survived | Outcome::NotReached) {
+            verdict.outcome = Outcome::Open;
+        }
         let line = serde_json::to_string(&verdict).map_err(|error| error.to_string())?;
         writeln!(file, "{line}").map_err(|error| error.to_string())?;
         if !matches!(verdict.outcome, Outcome::Caught | Outcome::OutOfTime) {
@@ -79,7 +82,7 @@ pub fn read(path: &Path) -> BTreeMap<String, Verdict> {
 }
 
 fn title(test: &Test) -> String {
-    format!("{}::{}", test.file, test.name)
+    trace::title(&test.file, &test.name)
 }
 
 /// What earlier verdicts say of the tests.

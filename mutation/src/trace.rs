@@ -31,29 +31,58 @@ pub enum End {
 /// Files whose tests read the sources as text and so cannot see a mutant; they would only cost time.
 const READERS: [&str; 2] = ["style", "traceability"];
 
-/// Writes `tests.json`.
-pub fn trace(work: &Path) -> Result<(), String> {
+/// What is known of the tests.
+#[derive(Debug, Default, Serialize, Deserialize)]
+pub struct Traced {
+    pub tests: Vec<Test>,
+    /// Those that did not end in the time that they were given, as `file::name`.
+    pub too_slow: BTreeSet<String>,
+    /// Those that fail without a mutant.
+    pub failing: BTreeSet<String>,
+}
+
+/// What a test is called in the results.
+pub fn title(file: &str, name: &str) -> String {
+    format!("{file}::{name}")
+}
+
+/// Writes `tests.json`: what it does not have yet, each test with so many seconds.
+pub fn trace(work: &Path, seconds: f64) -> Result<(), String> {
     let tree = work.join("tree");
-    let mut tests = Vec::new();
+    let mut traced: Traced = crate::read_json(&work.join("tests.json")).unwrap_or_default();
+    let known: BTreeSet<String> = traced.tests.iter().map(|test| title(&test.file, &test.name)).collect();
     let path = work.join("reached");
     for (file, binary) in binaries(&tree)? {
         if READERS.contains(&file.as_str()) {
             continue;
         }
         for name in names(&binary)? {
+            let title = title(&file, &name);
+            if known.contains(&title) || traced.failing.contains(&title) {
+                continue;
+            }
             let _ = std::fs::remove_file(&path);
             let start = Instant::now();
             let mut command = command(&tree, &binary, &name);
             command.env("MUTANT_TRACE", &path);
-            let end = run(&mut command, Duration::from_secs(1200))?;
+            let end = run(&mut command, Duration::from_secs_f64(seconds))?;
             let seconds = start.elapsed().as_secs_f64();
-            println!("{file} {name}: {end:?} in {seconds:.2} s");
-            if end == End::Passed {
-                let sites = reached(&path);
-                tests.push(Test { binary: binary.clone(), file: file.clone(), name, seconds, sites });
+            println!("{title}: {end:?} in {seconds:.2} s");
+            traced.too_slow.remove(&title);
+            match end {
+                End::Passed => {
+                    let sites = reached(&path);
+                    traced.tests.push(Test { binary: binary.clone(), file: file.clone(), name, seconds, sites });
+                }
+                End::OutOfTime => {
+                    traced.too_slow.insert(title);
+                }
+                End::Failed => {
+                    traced.failing.insert(title);
+                }
             }
         }
-        crate::write_json(&work.join("tests.json"), &tests)?;
+        crate::write_json(&work.join("tests.json"), &traced)?;
     }
     Ok(())
 }
