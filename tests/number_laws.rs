@@ -588,6 +588,15 @@ fn the_order_of_surds_is_exact_where_doubles_cannot_tell() {
     assert!(sum.clone() * sum - tiny < square);
 }
 
+/// A number that counts is written as the double that it is, and a dual number with its slope beside ε, in the width that is asked for.
+#[test]
+fn numbers_that_carry_something_say_what() {
+    let counted = Counting::input(2.5, Convention::Dense);
+    assert_eq!(format!("{counted:6.2} {counted:?}"), "  2.50 2.5");
+    let dual = Dual::new(Rational::new(1, 2), Rational::new(3, 1));
+    assert_eq!(format!("{dual:>14}"), "    1/2 + (3)ε");
+}
+
 #[test]
 fn surds_print_as_they_are_written() {
     let number = Surd::one() - Surd::ratio(3, 2) * root(2);
