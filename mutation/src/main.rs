@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! mutation prepare TREE WORK     all mutants into a copy of the tree; what the compiler refuses is set aside
-//! mutation trace WORK SECONDS    each test once, stopped after so long: how long it takes, and which mutants it reaches
+//! mutation trace WORK SECONDS    each test once, stopped after so long: how long it takes, and which mutants it reaches; of some files of
+//!                                tests if their names follow
 //! mutation run WORK ROOM SECONDS each mutant of a room against the tests that reach it, the likeliest first, so long in all
 //! mutation table WORK            the score of each room, and what survived
 //! ```
@@ -27,10 +28,12 @@ fn main() -> ExitCode {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let done = match words[..] {
         ["prepare", tree, work] => prepare::prepare(Path::new(tree), Path::new(work)),
-        ["trace", work, seconds] => number(seconds).and_then(|seconds| trace::trace(Path::new(work), seconds)),
+        ["trace", work, seconds, ref files @ ..] => {
+            number(seconds).and_then(|seconds| trace::trace(Path::new(work), seconds, files))
+        }
         ["run", work, room, seconds] => number(seconds).and_then(|seconds| run::run(Path::new(work), room, seconds)),
         ["table", work] => table::table(Path::new(work)),
-        _ => Err("prepare TREE WORK | trace WORK SECONDS | run WORK ROOM SECONDS | table WORK".into()),
+        _ => Err("prepare TREE WORK | trace WORK SECONDS [FILE…] | run WORK ROOM SECONDS | table WORK".into()),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

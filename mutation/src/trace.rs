@@ -46,13 +46,16 @@ pub fn title(file: &str, name: &str) -> String {
     format!("{file}::{name}")
 }
 
-/// Writes `tests.json`: what it does not have yet, each test with so many seconds.
-pub fn trace(work: &Path, seconds: f64) -> Result<(), String> {
+/// Writes `tests.json`: what it does not have yet of these files of tests, or of all, each test with so many seconds.
+pub fn trace(work: &Path, seconds: f64, files: &[&str]) -> Result<(), String> {
     let tree = work.join("tree");
     let mut traced: Traced = crate::read_json(&work.join("tests.json")).unwrap_or_default();
     let known: BTreeSet<String> = traced.tests.iter().map(|test| title(&test.file, &test.name)).collect();
     let path = work.join("reached");
-    for (file, binary) in binaries(&tree)? {
+    for (file, binary) in binaries(&tree, files)? {
+        for test in traced.tests.iter_mut().filter(|test| test.file == file) {
+            test.binary.clone_from(&binary);
+        }
         if READERS.contains(&file.as_str()) {
             continue;
         }
@@ -87,10 +90,15 @@ pub fn trace(work: &Path, seconds: f64) -> Result<(), String> {
     Ok(())
 }
 
-/// The test binaries of the copy.
-fn binaries(tree: &Path) -> Result<Vec<(String, PathBuf)>, String> {
+/// The test binaries of the copy, of these files or of all.
+fn binaries(tree: &Path, files: &[&str]) -> Result<Vec<(String, PathBuf)>, String> {
+    let mut chosen: Vec<&str> = files.iter().flat_map(|file| ["--test", file]).collect();
+    if chosen.is_empty() {
+        chosen.push("--tests");
+    }
     let output = Command::new("cargo")
-        .args(["test", "--tests", "--no-run", "--message-format=json"])
+        .args(["test", "--no-run", "--message-format=json"])
+        .args(chosen)
         .current_dir(tree)
         .stderr(Stdio::inherit())
         .output()
