@@ -265,7 +265,7 @@ fn what_is_not_seen_does_not_depend_on_the_coordinates() {
     let coordinates = rationals([["2", "3", "1"], ["-4", "5", "7"], ["3", "-2", "6"]]);
     let inverse = solve(rows_of(&coordinates), rows_of(&SMatrix::<Rational, 3, 3>::identity())).unwrap();
     let inverse = SMatrix::<Rational, 3, 3>::from_fn(|i, j| inverse[i][j].clone());
-    assert_eq!(coordinates.clone() * &inverse, SMatrix::identity());
+    assert_eq!(coordinates.clone() * &inverse, SMatrix::<Rational, 3, 3>::identity());
     let turned = &coordinates * motion * &inverse;
     for (sensor, unseen) in [
         ([["7", "0", "0"]], "λ^2 + 2λ − 15"),

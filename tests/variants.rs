@@ -7,6 +7,7 @@
 use immaculate::filter::converted::{converted_covariance, polar_position};
 use immaculate::filter::fixed_gain::FixedGain;
 use immaculate::gaussian::Gaussian;
+use immaculate::imm::quantity::Input;
 use immaculate::imm::{Equations, Initial, Problem, Quantity, Scope};
 use immaculate::model::motion::Mode;
 use immaculate::model::{Conversion, Measurement, PolarComponent};
@@ -322,6 +323,92 @@ fn a_covariance_updated_without_a_detection_uses_the_converted_noise_at_the_pred
                 .unwrap();
         assert!((found - (predicted - gain * h * predicted)).amax() > CHANGE * predicted.amax());
     }
+}
+
+/// The judge looks for the cause of a wrong value among the values that it is computed from. So these are found out: along shown values, one
+/// of which is moved, exactly those move that are computed from it.
+#[test]
+fn a_value_is_computed_from_its_inputs_and_from_nothing_else() {
+    let setups = [
+        linear(3),
+        fixed(&Equations::fixed_gain()),
+        polar("cubature-3"),
+        converted(Conversion::Standard),
+    ];
+    let mut seen = BTreeSet::new();
+    let mut declared = BTreeSet::new();
+    for setup in &setups {
+        let scope = Scope {
+            covariances: setup.equations.keeps_covariances,
+            conversions: setup.equations.converts,
+        };
+        let shown = setup.run().values;
+        let along = |shown: &Trace| setup.run_along(shown, |value| value, Triangle::Lower).values;
+        let before = along(&shown);
+        for (step, moved, mode) in shown.all_places() {
+            let has_detection = setup.measurements[step - 1].is_some();
+            let exists = scope.has(moved) && (has_detection || !moved.needs_detection());
+            let Some(values) = shown.get(step, moved, mode) else {
+                assert!(!exists, "{moved:?} is missing");
+                continue;
+            };
+            assert!(exists, "{moved:?} is there");
+            for of_step in step..=(step + 1).min(setup.measurements.len()) {
+                let has_detection = setup.measurements[of_step - 1].is_some();
+                let input = if of_step == step {
+                    Input::Now(moved)
+                } else {
+                    Input::Before(moved)
+                };
+                for quantity in Quantity::ALL.into_iter().filter(|&quantity| scope.has(quantity)) {
+                    if quantity.inputs(has_detection, scope).any(|one| one == input)
+                        && (has_detection || !quantity.needs_detection())
+                    {
+                        declared.insert((quantity, format!("{input:?}"), has_detection));
+                    }
+                }
+            }
+            let mut other = shown.clone();
+            other.set(
+                step,
+                moved,
+                mode,
+                values.iter().map(|value| value * 1.001 + 1e-4).collect(),
+            );
+            let after = along(&other);
+            for (of_step, quantity, of_mode) in before.all_places() {
+                if !differs(&before, &after, (of_step, quantity, of_mode), ROUNDING) {
+                    continue;
+                }
+                let input = if of_step == step {
+                    Input::Now(moved)
+                } else {
+                    Input::Before(moved)
+                };
+                let has_detection = setup.measurements[of_step - 1].is_some();
+                let is_declared = quantity.inputs(has_detection, scope).any(|declared| declared == input);
+                assert!(
+                    is_declared && of_step <= step + 1,
+                    "{quantity:?} is computed from {input:?}"
+                );
+                seen.insert((quantity, format!("{input:?}"), has_detection));
+            }
+        }
+    }
+    // What is declared and without effect: points about a mean have this mean, however far they are from it; and where deviations sum to
+    // zero, it does not matter about which point the others are taken.
+    let hidden = [
+        (Quantity::PredictedMean, Input::Now(Quantity::MixedCovariance), false),
+        (Quantity::PredictedMean, Input::Now(Quantity::MixedCovariance), true),
+        (
+            Quantity::CrossCovariance,
+            Input::Now(Quantity::PredictedMeasurement),
+            true,
+        ),
+    ];
+    let hidden = hidden.map(|(quantity, input, has_detection)| (quantity, format!("{input:?}"), has_detection));
+    let unseen: Vec<_> = declared.difference(&seen).cloned().collect();
+    assert_eq!(unseen, hidden);
 }
 
 // Problems with generic numbers

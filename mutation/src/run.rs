@@ -42,6 +42,9 @@ const STEP: usize = 16;
 pub fn run(work: &Path, room: &str, seconds: f64) -> Result<(), String> {
     let mutants: Vec<Mutant> = crate::read_json(&work.join("mutants.json"))?;
     let Traced { tests, too_slow, .. } = crate::read_json(&work.join("tests.json"))?;
+    // A file of tests that is being built again can look at its mutants later.
+    let (tests, gone): (Vec<Test>, Vec<Test>) = tests.into_iter().partition(|test| test.binary.exists());
+    let is_partial = !too_slow.is_empty() || !gone.is_empty();
     let path = work.join(format!("results-{room}.jsonl"));
     let mut verdicts = read(&path);
     let mut skill: HashMap<(String, usize), (f64, f64)> = HashMap::new();
@@ -59,7 +62,7 @@ pub fn run(work: &Path, room: &str, seconds: f64) -> Result<(), String> {
         }
         let passed = known.map(|verdict| verdict.passed.clone()).unwrap_or_default();
         let mut verdict = judge(&work.join("tree"), mutant, &tests, passed, seconds, &mut skill)?;
-        if !too_slow.is_empty() && matches!(verdict.outcome, Outcome::Survived | Outcome::NotReached) {
+        if is_partial && matches!(verdict.outcome, Outcome::Survived | Outcome::NotReached) {
             verdict.outcome = Outcome::Open;
         }
         let line = serde_json::to_string(&verdict).map_err(|error| error.to_string())?;

@@ -147,7 +147,12 @@ pub fn run(command: &mut Command, limit: Duration) -> Result<End, String> {
     let mut pause = Duration::from_micros(500);
     loop {
         if let Some(status) = child.try_wait().map_err(|error| error.to_string())? {
-            return Ok(if status.success() { End::Passed } else { End::Failed });
+            return match status.code() {
+                Some(0) => Ok(End::Passed),
+                // The shell's words for a program that is not there or cannot be started.
+                Some(126 | 127) => Err("a test binary cannot be started; trace its file again".into()),
+                _ => Ok(End::Failed),
+            };
         }
         if start.elapsed() > limit {
             let group = format!("-{}", child.id());
