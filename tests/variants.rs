@@ -411,6 +411,45 @@ fn a_value_is_computed_from_its_inputs_and_from_nothing_else() {
     assert_eq!(unseen, hidden);
 }
 
+/// What is computed without a detection is computed from what is there without one.
+#[test]
+fn without_a_detection_nothing_is_computed_from_one() {
+    let exists = |quantity: &Quantity| !quantity.needs_detection();
+    for (covariances, conversions) in [(true, true), (true, false), (false, false)] {
+        let scope = Scope {
+            covariances,
+            conversions,
+        };
+        for quantity in Quantity::ALL
+            .into_iter()
+            .filter(|quantity| scope.has(*quantity) && exists(quantity))
+        {
+            for Input::Now(input) | Input::Before(input) in quantity.inputs(false, scope) {
+                assert!(exists(&input) && scope.has(input), "{quantity:?} from {input:?}");
+            }
+        }
+    }
+}
+
+/// Of the quantities of two rows and two columns exactly the covariances are symmetric, where a problem's numbers are generic.
+#[test]
+fn the_covariances_are_the_symmetric_matrices() {
+    let measurement = Measurement::Linear(matrix(70, 0.3) + SMatrix::identity());
+    let run = generic::<2, 2>(3, measurement).run().values;
+    let mut symmetric = BTreeSet::new();
+    for (step, quantity, mode) in run.all_places() {
+        if let (2, Some(values)) = (quantity.rank(), run.get(step, quantity, mode)) {
+            assert_eq!(
+                values[1].to_bits() == values[2].to_bits(),
+                quantity.is_covariance(),
+                "{quantity:?}"
+            );
+            symmetric.insert(quantity);
+        }
+    }
+    assert!(symmetric.contains(&Quantity::Gain) && symmetric.contains(&Quantity::CombinedCovariance));
+}
+
 // Problems with generic numbers
 
 const RULE: &str = "cubature-5";
