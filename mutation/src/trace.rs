@@ -61,7 +61,7 @@ pub fn trace(work: &Path, seconds: f64, files: &[&str]) -> Result<(), String> {
         }
         for name in names(&binary)? {
             let title = title(&file, &name);
-            if known.contains(&title) || traced.failing.contains(&title) {
+            if known.contains(&title) {
                 continue;
             }
             let _ = std::fs::remove_file(&path);
@@ -72,6 +72,7 @@ pub fn trace(work: &Path, seconds: f64, files: &[&str]) -> Result<(), String> {
             let seconds = start.elapsed().as_secs_f64();
             println!("{title}: {end:?} in {seconds:.2} s");
             traced.too_slow.remove(&title);
+            traced.failing.remove(&title);
             match end {
                 End::Passed => {
                     let sites = reached(&path);
