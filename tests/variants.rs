@@ -6,9 +6,10 @@
 
 use immaculate::filter::converted::{converted_covariance, polar_position};
 use immaculate::filter::fixed_gain::FixedGain;
-use immaculate::gaussian::Gaussian;
+use immaculate::gaussian::{Gaussian, log_density};
 use immaculate::imm::quantity::Input;
 use immaculate::imm::{Equations, Initial, Problem, Quantity, Scope};
+use immaculate::matrix::ldl;
 use immaculate::model::motion::Mode;
 use immaculate::model::{Conversion, Measurement, PolarComponent};
 use immaculate::number::Enclosure;
@@ -445,6 +446,37 @@ fn the_covariances_are_the_symmetric_matrices() {
         }
     }
     assert!(symmetric.contains(&Quantity::Gain) && symmetric.contains(&Quantity::CombinedCovariance));
+}
+
+/// What a filter measures is what it uses: the converted measurement where it converts. An innovation reversed is the innovation with the other
+/// sign, to the last bit, and the residual of the updated mean is z − H x̂ = ν + ẑ − H x̂.
+#[test]
+fn the_residuals_of_variants_are_of_what_the_filter_uses() {
+    for setup in [linear(3), converted(Conversion::Standard)] {
+        let shown = setup.run().values;
+        let along = |id| {
+            let varied = varied(setup.clone(), &[id]);
+            varied.run_along(&shown, |value| value, Triangle::Lower).values
+        };
+        let (reversed, updated) = (along("innovation-reversed"), along("likelihood-of-updated-residual"));
+        let innovations = shown.all_places().filter(|place| place.1 == Quantity::Innovation);
+        for (step, quantity, j) in innovations.filter(|place| setup.measurements[place.0 - 1].is_some()) {
+            let values = |quantity| shown.get(step, quantity, j).unwrap();
+            let negative: Vec<f64> = values(quantity).iter().map(|value| -value).collect();
+            assert_eq!(reversed.get(step, quantity, j), Some(&negative));
+            let vector = |quantity| SVector::<f64, 2>::from_column_slice(values(quantity));
+            let mean = SVector::<f64, 4>::from_column_slice(values(Quantity::UpdatedMean));
+            let predicted = vector(Quantity::PredictedMeasurement);
+            let residual = vector(quantity) + predicted - setup.problem.measurement.matrix() * mean;
+            let covariance = SMatrix::<f64, 2, 2>::from_row_slice(values(Quantity::InnovationCovariance));
+            let expected = log_density(&residual, &ldl(&covariance));
+            let found = updated.get(step, Quantity::LogLikelihood, j).unwrap()[0];
+            assert!(
+                (found - expected).abs() < ROUNDING * expected.abs(),
+                "{found} {expected}"
+            );
+        }
+    }
 }
 
 // Problems with generic numbers
