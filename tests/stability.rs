@@ -598,6 +598,28 @@ fn a_product_of_two_stable_filters_is_unstable() {
     }
 }
 
+#[test]
+fn a_graph_has_only_nodes_and_letters_that_are_there() {
+    let matrices = [Matrix3::<Rational>::zeros()];
+    let graph = |edges: Vec<Edge>| Quadratics {
+        edges,
+        forms: vec![Matrix3::identity()],
+    };
+    let (from, letter, to) = (0, 0, 0);
+    let good = Edge { from, letter, to };
+    assert_eq!(graph(vec![good]).check(&matrices), Ok(()));
+    for bad in [
+        Edge { from: 1, ..good },
+        Edge { letter: 1, ..good },
+        Edge { to: 1, ..good },
+    ] {
+        assert_eq!(
+            graph(vec![good, bad]).check(&matrices),
+            Err(NotProven::Edge { edge: 1 })
+        );
+    }
+}
+
 /// Exact: forms that remember two letters stand at the words ab, and the letter c leads from ab to bc.
 #[test]
 fn a_graph_that_remembers_goes_from_the_last_letters_to_the_next_ones() {
