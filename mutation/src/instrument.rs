@@ -62,7 +62,17 @@ impl<'a> Instrumented<'a> {
             }
             waiting.entry((mutant.genre.clone(), range)).or_default().push(mutant);
         }
-        Self { text, waiting, edits: Vec::new(), depth: 0, in_constant: 0, is_opaque: false, mutants: Vec::new(), next, refused }
+        Self {
+            text,
+            waiting,
+            edits: Vec::new(),
+            depth: 0,
+            in_constant: 0,
+            is_opaque: false,
+            mutants: Vec::new(),
+            next,
+            refused,
+        }
     }
 
     /// The instrumented text.
@@ -124,22 +134,44 @@ impl<'a> Instrumented<'a> {
     }
 
     fn open(&mut self, at: usize, text: String) {
-        self.edits.push(Edit { at, order: (2, self.depth), removed: 0, text });
+        self.edits.push(Edit {
+            at,
+            order: (2, self.depth),
+            removed: 0,
+            text,
+        });
     }
 
     fn close(&mut self, at: usize, text: String) {
-        self.edits.push(Edit { at, order: (0, -self.depth), removed: 0, text });
+        self.edits.push(Edit {
+            at,
+            order: (0, -self.depth),
+            removed: 0,
+            text,
+        });
     }
 
     fn replace(&mut self, range: &Range<usize>, text: &str) {
-        self.edits.push(Edit { at: range.start, order: (3, 0), removed: range.len(), text: text.to_owned() });
+        self.edits.push(Edit {
+            at: range.start,
+            order: (3, 0),
+            removed: range.len(),
+            text: text.to_owned(),
+        });
     }
 
     fn binary(&mut self, node: &syn::ExprBinary) {
         let operator = range(node.op.span());
         if has_let(&node.left) || has_let(&node.right) {
-            for mutant in self.waiting.remove(&("BinaryOperator".to_owned(), operator)).unwrap_or_default() {
-                self.add(mutant, Build::Unviable("a let in a chain of conditions can only be followed by &&".into()));
+            for mutant in self
+                .waiting
+                .remove(&("BinaryOperator".to_owned(), operator))
+                .unwrap_or_default()
+            {
+                self.add(
+                    mutant,
+                    Build::Unviable("a let in a chain of conditions can only be followed by &&".into()),
+                );
             }
             return;
         }
@@ -151,10 +183,14 @@ impl<'a> Instrumented<'a> {
         let (before, between, after, alternative): (_, _, _, fn(&str) -> String) = match node.op {
             BinOp::And(_) | BinOp::Or(_) => return self.lazy(node, first, &mutants),
             BinOp::Eq(_) | BinOp::Ne(_) | BinOp::Lt(_) | BinOp::Le(_) | BinOp::Gt(_) | BinOp::Ge(_) => {
-                ("(match (&(", "), &(", ")) { (l__, r__) => ", |symbol| format!("*l__ {symbol} *r__"))
+                ("(match (&(", "), &(", ")) { (l__, r__) => ", |symbol| {
+                    format!("*l__ {symbol} *r__")
+                })
             }
             _ if is_assignment(&node.op) => return self.assignment(node, first, &mutants),
-            _ => ("(match ((", "), (", ")) { (l__, r__) => ", |symbol| format!("l__ {symbol} r__")),
+            _ => ("(match ((", "), (", ")) { (l__, r__) => ", |symbol| {
+                format!("l__ {symbol} r__")
+            }),
         };
         let alternatives: Vec<String> = mutants.iter().map(|mutant| alternative(&mutant.replacement)).collect();
         let question = question(first, &alternative(symbol), &alternatives);
@@ -170,9 +206,7 @@ impl<'a> Instrumented<'a> {
         let negation = if matches!(node.op, BinOp::And(_)) { "" } else { "!" };
         debug_assert_eq!(mutants.len(), 1);
         self.open(left.start, "(match (".to_owned());
-        let middle = format!(
-            ") {{ l__ => if ({negation}l__) ^ {MODULE}::is({first}) /*#{first}*/ {{ ("
-        );
+        let middle = format!(") {{ l__ => if ({negation}l__) ^ {MODULE}::is({first}) /*#{first}*/ {{ (");
         self.replace(&operator, &middle);
         self.close(right.end, ") } else { l__ } })".to_owned());
     }
@@ -191,9 +225,16 @@ impl<'a> Instrumented<'a> {
 
 /// The text that asks which mutant of a site is alive.
 fn question(first: usize, itself: &str, alternatives: &[String]) -> String {
-    let mut text = format!("match {MODULE}::site({first}, {}) {{ 0 => {itself}, /*@{first}*/\n", alternatives.len());
+    let mut text = format!(
+        "match {MODULE}::site({first}, {}) {{ 0 => {itself}, /*@{first}*/\n",
+        alternatives.len()
+    );
     for (number, alternative) in alternatives.iter().enumerate() {
-        let pattern = if number + 1 == alternatives.len() { "_".to_owned() } else { (number + 1).to_string() };
+        let pattern = if number + 1 == alternatives.len() {
+            "_".to_owned()
+        } else {
+            (number + 1).to_string()
+        };
         let _ = writeln!(text, "{pattern} => {alternative}, /*#{}*/", first + number);
     }
     text + "}"
@@ -213,11 +254,22 @@ fn has_let(node: &Expr) -> bool {
 }
 
 fn is_assignment(operator: &BinOp) -> bool {
-    use BinOp::*;
+    use BinOp::{
+        AddAssign, BitAndAssign, BitOrAssign, BitXorAssign, DivAssign, MulAssign, RemAssign, ShlAssign, ShrAssign,
+        SubAssign,
+    };
     matches!(
         operator,
-        AddAssign(_) | SubAssign(_) | MulAssign(_) | DivAssign(_) | RemAssign(_) | BitXorAssign(_) | BitAndAssign(_)
-            | BitOrAssign(_) | ShlAssign(_) | ShrAssign(_)
+        AddAssign(_)
+            | SubAssign(_)
+            | MulAssign(_)
+            | DivAssign(_)
+            | RemAssign(_)
+            | BitXorAssign(_)
+            | BitAndAssign(_)
+            | BitOrAssign(_)
+            | ShlAssign(_)
+            | ShrAssign(_)
     )
 }
 
@@ -289,7 +341,13 @@ impl<'ast> Visit<'ast> for Instrumented<'_> {
             if let Some((first, mutants)) = self.take("MatchArmGuard", &place) {
                 let mut text = format!("(match {MODULE}::site({first}, {}) {{ ", mutants.len());
                 for (number, mutant) in mutants.iter().enumerate() {
-                    let _ = writeln!(text, "{} => {}, /*#{}*/", number + 1, mutant.replacement, first + number);
+                    let _ = writeln!(
+                        text,
+                        "{} => {}, /*#{}*/",
+                        number + 1,
+                        mutant.replacement,
+                        first + number
+                    );
                 }
                 self.open(place.start, text + "_ => (");
                 self.close(place.end, ") })".to_owned());
@@ -312,7 +370,13 @@ impl<'ast> Visit<'ast> for Instrumented<'_> {
             if let Some((first, mutants)) = self.take("FnValue", &body) {
                 let mut text = format!(" match {MODULE}::site({first}, {}) {{\n", mutants.len());
                 for (number, mutant) in mutants.iter().enumerate() {
-                    let _ = writeln!(text, "{} => return {}, /*#{}*/", number + 1, mutant.replacement, first + number);
+                    let _ = writeln!(
+                        text,
+                        "{} => return {}, /*#{}*/",
+                        number + 1,
+                        mutant.replacement,
+                        first + number
+                    );
                 }
                 let brace = range(node.brace_token.span.open()).end;
                 self.open(brace, text + "_ => {} }\n");
@@ -326,11 +390,20 @@ impl<'ast> Visit<'ast> for Instrumented<'_> {
             let start = range(field.span()).start;
             if let (Some(base), Some((first, _))) = (&node.rest, self.take("StructField", &(start..start))) {
                 let base = self.text[range(base.span())].to_owned();
-                let syn::Member::Named(name) = &field.member else { continue };
+                let syn::Member::Named(name) = &field.member else {
+                    continue;
+                };
                 let value = range(field.expr.span());
-                let label = if field.colon_token.is_none() { format!("{name}: ") } else { String::new() };
+                let label = if field.colon_token.is_none() {
+                    format!("{name}: ")
+                } else {
+                    String::new()
+                };
                 self.open(value.start, format!("{label}match {MODULE}::is({first}) {{ false => ("));
-                self.close(value.end, format!("), /*@{first}*/\n true => ({base}).{name}, /*#{first}*/\n }}"));
+                self.close(
+                    value.end,
+                    format!("), /*@{first}*/\n true => ({base}).{name}, /*#{first}*/\n }}"),
+                );
             }
         }
         visit::visit_expr_struct(self, node);

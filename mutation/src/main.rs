@@ -20,18 +20,18 @@ mod trace;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let done = match words[..] {
-        ["prepare", tree, work] => prepare::prepare(Path::new(tree), Path::new(work)),
+        ["prepare", tree, work] => folder(work).and_then(|work| prepare::prepare(Path::new(tree), &work)),
         ["trace", work, seconds, ref files @ ..] => {
-            number(seconds).and_then(|seconds| trace::trace(Path::new(work), seconds, files))
+            number(seconds).and_then(|seconds| trace::trace(&folder(work)?, seconds, files))
         }
-        ["run", work, room, seconds] => number(seconds).and_then(|seconds| run::run(Path::new(work), room, seconds)),
+        ["run", work, room, seconds] => number(seconds).and_then(|seconds| run::run(&folder(work)?, room, seconds)),
         ["table", work] => table::table(Path::new(work)),
         _ => Err("prepare TREE WORK | trace WORK SECONDS [FILE…] | run WORK ROOM SECONDS | table WORK".into()),
     };
@@ -42,6 +42,12 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// A folder, made if it is not there: absolute, as tests have working directories of their own.
+fn folder(text: &str) -> Result<PathBuf, String> {
+    let made = std::fs::create_dir_all(text).and_then(|()| Path::new(text).canonicalize());
+    made.map_err(|error| format!("{text}: {error}"))
 }
 
 fn number(text: &str) -> Result<f64, String> {

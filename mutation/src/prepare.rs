@@ -41,10 +41,20 @@ pub fn prepare(tree: &Path, work: &Path) -> Result<(), String> {
 }
 
 fn copy_tree(tree: &Path, copy: &Path) -> Result<(), String> {
-    let files = Command::new("git").args(["ls-files"]).current_dir(tree).output().map_err(|error| error.to_string())?;
-    for file in String::from_utf8_lossy(&files.stdout).lines().filter(|file| *file != "Cargo.toml") {
+    let files = Command::new("git")
+        .args(["ls-files"])
+        .current_dir(tree)
+        .output()
+        .map_err(|error| error.to_string())?;
+    for file in String::from_utf8_lossy(&files.stdout)
+        .lines()
+        .filter(|file| *file != "Cargo.toml")
+    {
         let to = copy.join(file);
-        write(&to, &std::fs::read(tree.join(file)).map_err(|error| format!("{file}: {error}"))?)?;
+        write(
+            &to,
+            &std::fs::read(tree.join(file)).map_err(|error| format!("{file}: {error}"))?,
+        )?;
     }
     let manifest = std::fs::read_to_string(tree.join("Cargo.toml")).map_err(|error| error.to_string())?;
     let mut manifest: toml::Table = manifest.parse().map_err(|error| format!("Cargo.toml: {error}"))?;
@@ -83,12 +93,20 @@ fn write_sources(
     while let Some(folder) = waiting.pop() {
         for entry in std::fs::read_dir(&folder).map_err(|error| error.to_string())? {
             let path = entry.map_err(|error| error.to_string())?.path();
-            if path.is_dir() { waiting.push(path) } else { paths.push(path) }
+            if path.is_dir() {
+                waiting.push(path)
+            } else {
+                paths.push(path)
+            }
         }
     }
     paths.sort();
     for path in paths {
-        let name = path.strip_prefix(tree).map_err(|error| error.to_string())?.display().to_string();
+        let name = path
+            .strip_prefix(tree)
+            .map_err(|error| error.to_string())?
+            .display()
+            .to_string();
         let to = copy.join(name.replacen("src", SOURCES, 1));
         let text = std::fs::read_to_string(&path).map_err(|error| format!("{name}: {error}"))?;
         if path.extension().is_none_or(|extension| extension != "rs") {
@@ -149,7 +167,9 @@ fn refuse(
             span = &span["expansion"]["span"];
         }
         let file = span["file_name"].as_str().unwrap_or_default();
-        let Ok(text) = std::fs::read_to_string(copy.join(file)) else { continue };
+        let Ok(text) = std::fs::read_to_string(copy.join(file)) else {
+            continue;
+        };
         let lines: Vec<&str> = text.lines().collect();
         let (start, end) = (number(&span["line_start"]), number(&span["line_end"]));
         for line in &lines[start.saturating_sub(1)..end.min(lines.len())] {
@@ -163,17 +183,25 @@ fn refuse(
         }
     }
     if let Some(site) = sites.first() {
-        for mutant in mutants.iter().filter(|mutant| mutant.site == *site && mutant.build == Build::In) {
+        for mutant in mutants
+            .iter()
+            .filter(|mutant| mutant.site == *site && mutant.build == Build::In)
+        {
             refused.insert(mutant.name.clone(), Build::NotChosen(sentence.clone()));
         }
         return;
     }
-    let place = primary.first().map_or(String::new(), |span| format!("{}:{}", span["file_name"], span["line_start"]));
+    let place = primary.first().map_or(String::new(), |span| {
+        format!("{}:{}", span["file_name"], span["line_start"])
+    });
     unknown.insert(format!("{place}: {sentence}"));
 }
 
 fn number(value: &Value) -> usize {
-    value.as_u64().and_then(|value| usize::try_from(value).ok()).unwrap_or(0)
+    value
+        .as_u64()
+        .and_then(|value| usize::try_from(value).ok())
+        .unwrap_or(0)
 }
 
 /// The number in a comment of a line.

@@ -53,7 +53,11 @@ pub fn run(work: &Path, room: &str, seconds: f64) -> Result<(), String> {
         .iter()
         .filter(|mutant| mutant.build == Build::In && mutant::room(&mutant.file) == room)
         .collect();
-    let mut file = std::fs::OpenOptions::new().create(true).append(true).open(&path).map_err(|e| e.to_string())?;
+    let mut file = std::fs::OpenOptions::new()
+        .create(true)
+        .append(true)
+        .open(&path)
+        .map_err(|e| e.to_string())?;
     let order = (0..STEP).map(|start| start.reverse_bits() >> (usize::BITS - STEP.trailing_zeros()));
     for mutant in order.flat_map(|start| of_room.iter().skip(start).step_by(STEP)) {
         let known = verdicts.get(&mutant.name);
@@ -68,7 +72,12 @@ pub fn run(work: &Path, room: &str, seconds: f64) -> Result<(), String> {
         let line = serde_json::to_string(&verdict).map_err(|error| error.to_string())?;
         writeln!(file, "{line}").map_err(|error| error.to_string())?;
         if !matches!(verdict.outcome, Outcome::Caught | Outcome::OutOfTime) {
-            println!("{:?} after {} tests: {}", verdict.outcome, verdict.passed.len(), verdict.name);
+            println!(
+                "{:?} after {} tests: {}",
+                verdict.outcome,
+                verdict.passed.len(),
+                verdict.name
+            );
         }
         verdicts.insert(mutant.name.clone(), verdict);
     }
@@ -95,9 +104,15 @@ fn learn(
     tests: &[Test],
     skill: &mut HashMap<(String, usize), (f64, f64)>,
 ) {
-    let numbers: HashMap<String, usize> = tests.iter().enumerate().map(|(number, test)| (title(test), number)).collect();
+    let numbers: HashMap<String, usize> = tests
+        .iter()
+        .enumerate()
+        .map(|(number, test)| (title(test), number))
+        .collect();
     for mutant in mutants {
-        let Some(verdict) = verdicts.get(&mutant.name) else { continue };
+        let Some(verdict) = verdicts.get(&mutant.name) else {
+            continue;
+        };
         if let Some(number) = verdict.by.as_ref().and_then(|by| numbers.get(by)) {
             let entry = skill.entry((mutant.file.clone(), *number)).or_default();
             *entry = (entry.0 + 1.0, entry.1 + 1.0);
@@ -117,9 +132,18 @@ fn judge(
     mut seconds: f64,
     skill: &mut HashMap<(String, usize), (f64, f64)>,
 ) -> Result<Verdict, String> {
-    let verdict = |outcome, by, passed| Verdict { name: mutant.name.clone(), outcome, by, passed };
+    let verdict = |outcome, by, passed| Verdict {
+        name: mutant.name.clone(),
+        outcome,
+        by,
+        passed,
+    };
     let mut reaching: Vec<(f64, usize)> = Vec::new();
-    for (number, test) in tests.iter().enumerate().filter(|(_, test)| test.sites.contains(&mutant.site)) {
+    for (number, test) in tests
+        .iter()
+        .enumerate()
+        .filter(|(_, test)| test.sites.contains(&mutant.site))
+    {
         let (caught, tried) = skill.get(&(mutant.file.clone(), number)).copied().unwrap_or_default();
         // A test that reaches less is more about what it reaches.
         let narrow = 100.0 / (100.0 + test.sites.len() as f64);
@@ -150,10 +174,18 @@ fn judge(
             End::Passed => passed.insert(title(test)),
             End::Failed | End::OutOfTime => {
                 entry.0 += 1.0;
-                let outcome = if end == End::Failed { Outcome::Caught } else { Outcome::OutOfTime };
+                let outcome = if end == End::Failed {
+                    Outcome::Caught
+                } else {
+                    Outcome::OutOfTime
+                };
                 return Ok(verdict(outcome, Some(title(test)), passed));
             }
         };
     }
-    Ok(verdict(if is_open { Outcome::Open } else { Outcome::Survived }, None, passed))
+    Ok(verdict(
+        if is_open { Outcome::Open } else { Outcome::Survived },
+        None,
+        passed,
+    ))
 }

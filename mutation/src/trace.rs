@@ -76,7 +76,13 @@ pub fn trace(work: &Path, seconds: f64, files: &[&str]) -> Result<(), String> {
             match end {
                 End::Passed => {
                     let sites = reached(&path);
-                    traced.tests.push(Test { binary: binary.clone(), file: file.clone(), name, seconds, sites });
+                    traced.tests.push(Test {
+                        binary: binary.clone(),
+                        file: file.clone(),
+                        name,
+                        seconds,
+                        sites,
+                    });
                 }
                 End::OutOfTime => {
                     traced.too_slow.insert(title);
@@ -108,16 +114,31 @@ fn binaries(tree: &Path, files: &[&str]) -> Result<Vec<(String, PathBuf)>, Strin
         .lines()
         .filter_map(|line| serde_json::from_str::<Value>(line).ok())
         .filter(|value| value["target"]["kind"][0] == "test")
-        .filter_map(|value| Some((value["target"]["name"].as_str()?.to_owned(), value["executable"].as_str()?.into())))
+        .filter_map(|value| {
+            Some((
+                value["target"]["name"].as_str()?.to_owned(),
+                value["executable"].as_str()?.into(),
+            ))
+        })
         .collect();
-    if output.status.success() { Ok(found) } else { Err("the tests of the copy do not build".into()) }
+    if output.status.success() {
+        Ok(found)
+    } else {
+        Err("the tests of the copy do not build".into())
+    }
 }
 
 fn names(binary: &Path) -> Result<Vec<String>, String> {
-    let output =
-        Command::new(binary).args(["--list", "--format=terse"]).output().map_err(|error| error.to_string())?;
+    let output = Command::new(binary)
+        .args(["--list", "--format=terse"])
+        .output()
+        .map_err(|error| error.to_string())?;
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
-    Ok(text.lines().filter_map(|line| line.strip_suffix(": test")).map(str::to_owned).collect())
+    Ok(text
+        .lines()
+        .filter_map(|line| line.strip_suffix(": test"))
+        .map(str::to_owned)
+        .collect())
 }
 
 /// One test in a process of its own. Random tests do not look for the smallest counterexample, snapshots are only compared, and a
@@ -168,5 +189,8 @@ pub fn run(command: &mut Command, limit: Duration) -> Result<End, String> {
 
 fn reached(path: &Path) -> BTreeSet<usize> {
     let bytes = std::fs::read(path).unwrap_or_default();
-    bytes.chunks_exact(4).map(|four| u32::from_le_bytes([four[0], four[1], four[2], four[3]]) as usize).collect()
+    bytes
+        .chunks_exact(4)
+        .map(|four| u32::from_le_bytes([four[0], four[1], four[2], four[3]]) as usize)
+        .collect()
 }
