@@ -588,6 +588,24 @@ fn the_order_of_surds_is_exact_where_doubles_cannot_tell() {
     assert!(sum.clone() * sum - tiny < square);
 }
 
+/// A dual number is decided where its value and its slope are; a number that counts has the value of the double, constants among them;
+/// and two tallies together have counted what both have.
+#[test]
+fn what_a_number_carries_takes_part() {
+    let (one, undecided) = (Rational::one(), Rational::undecided());
+    assert!(Dual::new(one.clone(), one.clone()).is_decided());
+    assert!(!Dual::new(one.clone(), undecided.clone()).is_decided() && !Dual::new(undecided, one).is_decided());
+    let (two, input) = (Counting::integer(2), Counting::input(2.0, Convention::Structural));
+    assert_eq!(
+        [-two, two - Counting::integer(5), -input].map(Counting::value),
+        [-2.0, -3.0, -2.0]
+    );
+    let (_, sum) = Counting::count(|| input + input);
+    let (_, quotient) = Counting::count(|| input / input + input);
+    let both = sum.and(&quotient).and(&quotient);
+    assert_eq!((both.additions, both.divisions, both.multiplications), (3, 2, 0));
+}
+
 /// A number that counts is written as the double that it is, and a dual number with its slope beside ε, in the width that is asked for.
 #[test]
 fn numbers_that_carry_something_say_what() {
