@@ -10,7 +10,7 @@
 use immaculate::matrix::is_finite;
 use immaculate::number::{
     Convention, Counting, Dual, Enclosure, Field, Polynomial, RandomRounding, Rational, RationalFunction, Real, Roots,
-    Surd,
+    Surd, Tally,
 };
 use nalgebra::{Matrix2, Matrix3, RowVector3, SMatrix, Vector2, Vector3};
 use num_traits::{One, Zero};
@@ -600,10 +600,18 @@ fn what_a_number_carries_takes_part() {
         [-two, two - Counting::integer(5), -input].map(Counting::value),
         [-2.0, -3.0, -2.0]
     );
-    let (_, sum) = Counting::count(|| input + input);
-    let (_, quotient) = Counting::count(|| input / input + input);
-    let both = sum.and(&quotient).and(&quotient);
-    assert_eq!((both.additions, both.divisions, both.multiplications), (3, 2, 0));
+    let (_, once) = Counting::count(|| (input * input + input / input).sqrt().exp());
+    let thrice = once.and(&once).and(&once);
+    let counts = |tally: Tally| {
+        [
+            tally.additions,
+            tally.multiplications,
+            tally.divisions,
+            tally.roots,
+            tally.functions,
+        ]
+    };
+    assert_eq!((counts(once), counts(thrice)), ([1; 5], [3; 5]));
 }
 
 /// A number that counts is written as the double that it is, and a dual number with its slope beside ε, in the width that is asked for.
