@@ -17,7 +17,7 @@ use immaculate::paper::specification::Choices;
 use immaculate::statistics::Estimate;
 use immaculate::statistics::consistency::{bounds, nees, nis};
 use immaculate::statistics::delay::detection_delays;
-use immaculate::statistics::estimate::{Estimate, figure, mean, paired_difference, root_mean_square};
+use immaculate::statistics::estimate::{figure, mean, paired_difference, root_mean_square};
 use immaculate::statistics::rmse;
 use nalgebra::{Vector4, matrix, vector};
 use quickcheck::QuickCheck;
