@@ -19,7 +19,7 @@ use immaculate::report::rule::describe;
 use immaculate::rule::gauss_hermite::gauss_hermite;
 use immaculate::rule::unscented::{Parameters, unscented};
 use immaculate::rule::{InvalidRule, Rule, RuleName};
-use nalgebra::{Matrix2, Matrix4, Vector2, matrix, vector};
+use nalgebra::{Matrix2, Matrix3, Matrix4, Vector2, matrix, vector};
 use proptest::prelude::*;
 
 // Problems
@@ -546,6 +546,25 @@ fn a_conversion_needs_one_range_one_bearing_and_their_variances() {
         refused(&scene),
         "`measurement.components` must be one range and one bearing to be converted to a position (sustika2015 (20))"
     );
+    // A third component has no place in a position, whatever it is.
+    let scene = converted_scene(Conversion::Standard, [0.0, 0.0]);
+    for third in [PolarComponent::Range, PolarComponent::Bearing] {
+        let problem = Problem {
+            modes: scene.problem.modes.clone(),
+            transition: scene.problem.transition.clone(),
+            measurement: Measurement::Converted {
+                components: [PolarComponent::Range, PolarComponent::Bearing, third],
+                position: [0, 2],
+                sensor: [0.0, 0.0],
+                conversion: Conversion::Standard,
+            },
+            measurement_noise: Matrix3::identity(),
+            rule: None,
+            fixed_gains: None,
+        };
+        let refused = Imm::new(problem, Equations::converted(), &scene.initial);
+        assert_eq!(refused.err(), Some(InvalidProblem::NotRangeAndBearing));
+    }
     // Zero noises are no covariance.
     let mut scene = converted_scene(Conversion::Standard, [0.0, 0.0]);
     for zero in [0, 1] {
@@ -628,8 +647,11 @@ fn a_bearing_in_degrees_is_refused() {
         "step 1, mode `all`, liu2017 (31): the measured bearing -6.5 is outside ±2π: is it in degrees?",
     );
     // Up to two turns apart a bearing is an angle in radians, wherever its owner cuts the circle; a range is not an angle.
-    let mut filter = scene.filter().unwrap();
-    assert!(filter.step(Some(&vector![15000.0, 6.25])).is_ok());
+    let two_turns = 2.0 * std::f64::consts::PI;
+    for bearing in [6.25, two_turns, -two_turns] {
+        let mut filter = scene.filter().unwrap();
+        assert!(filter.step(Some(&vector![15000.0, bearing])).is_ok(), "{bearing}");
+    }
 }
 
 #[test]

@@ -7,6 +7,7 @@
 
 use immaculate::imm::Quantity;
 use immaculate::number::Real;
+use immaculate::oracle::case::{self, Expected};
 use immaculate::oracle::problem::{FilterFile, MeasurementFile, ProblemFile, Rows};
 use immaculate::oracle::published::{FLAGS, all, rejected};
 use immaculate::oracle::run::Computed;
@@ -84,6 +85,28 @@ fn there_are_many_short_problems_and_few_long_ones() {
         let is_told = expected.iter().any(|flag| has(problem, flag));
         assert!(is_told, "{}: {steps} steps", problem.id);
     }
+}
+
+/// Exact: the files hold the problems that the program makes, number by number, those that must be refused with their class, and no others.
+#[test]
+fn the_published_files_are_what_the_program_makes() {
+    let made = all().into_iter().map(|problem| (problem, None));
+    let refused = rejected().into_iter().map(|(problem, class, _)| (problem, Some(class)));
+    let made: BTreeMap<String, _> = made.chain(refused).map(|made| (made.0.id.clone(), made)).collect();
+    let published = case::all().unwrap();
+    for case in published {
+        let class = match &case.expected {
+            Expected::Trace(_) => None,
+            Expected::Rejection(class) => Some(*class),
+        };
+        assert_eq!(
+            made.get(&case.problem.id),
+            Some(&(case.problem.clone(), class)),
+            "{}",
+            case.problem.id
+        );
+    }
+    assert_eq!(published.len(), made.len());
 }
 
 #[test]

@@ -437,6 +437,15 @@ fn a_conversion_is_as_valid_as_its_nonlinearity_says() {
             grown(&true_error) / grown(&true_claim),
             "{conversion}"
         );
+        // What is claimed is the average over measured ranges: at r ± σ_r, which have the mean r and the variance σ_r².
+        let (r, factor) = (rho.clone() / s.clone(), conversion.factor(&w));
+        let claims = [r.clone() + integer(1), r.clone() - integer(1)]
+            .map(|range| conversion.variances(&squared(&range), &integer(1), &s, &w));
+        let errors = errors_as_measured(&factor, &squared(&r), &integer(1), &w);
+        for axis in 0..2 {
+            let claim = (claims[0][axis].clone() + claims[1][axis].clone()) / integer(2);
+            assert_eq!(found.as_measured[axis].clone() * claim, errors[axis], "{conversion}");
+        }
         for across in [&found.as_measured[1], &found.as_true[1]] {
             assert_eq!(at_zero(across), integer(1), "{conversion}");
             assert_ne!(*across, integer(1), "and only in the limit");

@@ -412,6 +412,41 @@ fn a_filter_mixes_index_by_index_wherever_it_mixes() {
     }
 }
 
+/// Exact, bit for bit: in the table with unbiased mixing a mode starts from the mixture of the estimates, each with what it lacks taken
+/// from this mode; the combined estimate is the mixture as it is.
+#[test]
+fn a_filter_with_unbiased_mixing_mixes_what_is_augmented() {
+    let (problem, mut initial) = six_states();
+    (initial.modes[1].mean[4], initial.modes[1].mean[5]) = (2.0, -3.0);
+    let modes = problem.modes.clone();
+    let mut filter = Imm::new(problem, Equations::cubature().with_unbiased_mixing(), &initial).unwrap();
+    let step = filter.step(Some(&vector![1410.0, 2.35])).unwrap();
+    for j in 0..2 {
+        let weights = &step.mixing_probabilities[j];
+        let estimates: Vec<_> = (0..2)
+            .map(|i| augmented(&initial.modes[i], &initial.modes[j], &modes[i]))
+            .collect();
+        assert_eq!(step.mixed[j].mean, mixture_mean(weights, &estimates));
+        assert_eq!(
+            step.mixed[j].covariance,
+            mixture_covariance(weights, &estimates, &step.mixed[j].mean)
+        );
+    }
+    // Mixed for the mode that has all entries, plain estimates are another mixture.
+    assert_ne!(
+        step.mixed[1].mean,
+        mixture_mean(&step.mixing_probabilities[1], &initial.modes)
+    );
+    assert_eq!(
+        step.combined.mean,
+        mixture_mean(&step.mode_probabilities, &step.updated)
+    );
+    assert_eq!(
+        step.combined.covariance,
+        mixture_covariance(&step.mode_probabilities, &step.updated, &step.combined.mean)
+    );
+}
+
 /// Property: at the negative x-axis each of the three places of a plain bearing has its own effect, and a filter with plain bearings has
 /// all.
 #[test]
@@ -441,5 +476,6 @@ fn plain_bearings_are_plain_in_all_three_places() {
         plain.innovation_covariances[0],
         without_deviations.innovation_covariances[0]
     );
+    assert_ne!(plain.cross_covariances[0], without_deviations.cross_covariances[0]);
     assert_ne!(plain.innovations[0], without_innovation.innovations[0]);
 }

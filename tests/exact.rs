@@ -18,7 +18,7 @@ use immaculate::model::acceleration::{
     acceleration_response, constant_acceleration, embedded_constant_velocity, embedded_velocity_response,
     position_matrix, response_noise,
 };
-use immaculate::model::motion::{acceleration_noise, constant_velocity, coordinated_turn, integrated_noise};
+use immaculate::model::motion::{Mode, acceleration_noise, constant_velocity, coordinated_turn, integrated_noise};
 use immaculate::number::{Convention, Field, Rational, RationalFunction, Surd};
 use immaculate::paper::sustika2015::operations::{Filter, cycle};
 use immaculate::paper::sustika2015::reasoning::{
@@ -29,7 +29,9 @@ use immaculate::rule::fifth_degree::{self, fifth_degree};
 use immaculate::rule::gauss_hermite::{Node, gauss_hermite, moment, nodes};
 use immaculate::rule::moment::{exactness, gaussian_moment, rule_moment, wrong_moment_of_degree};
 use immaculate::rule::simplex::{self, edge_midpoints, simplex, vertices};
-use immaculate::rule::sphere::{SphericalRule, on_axes, on_axes_and_diagonals, on_simplex, radial_moment};
+use immaculate::rule::sphere::{
+    SphericalRule, harmonic_sum, on_axes, on_axes_and_diagonals, on_simplex, radial_moment,
+};
 use immaculate::rule::third_degree::{self, third_degree};
 use immaculate::rule::unscented::{self, Parameters, unscented};
 use immaculate::rule::{ExactRule, InvalidRule, Rule, RuleName, printed};
@@ -54,6 +56,26 @@ fn third_degree_rule_is_exact_to_degree_three_and_not_four() {
             _ => format!("E x1^4 = {n}, where the Gaussian has 3"),
         };
         assert_eq!(found.failure.unwrap().to_string(), first_wrong);
+    }
+}
+
+/// α is how far the points are from the mean, in parts of where they are for α = 1.
+#[test]
+fn the_spread_of_the_unscented_rule_is_its_first_parameter() {
+    for n in 1..=5 {
+        for kappa in [Rational::new(1, 2), Rational::new(2, 1)] {
+            let whole_spread = unscented(n, &Parameters::of_kappa(kappa.clone())).unwrap();
+            let parameters = Parameters {
+                alpha: Rational::new(1, 3),
+                ..Parameters::of_kappa(kappa)
+            };
+            let third = surd(&Rational::new(1, 3));
+            let narrow = unscented(n, &parameters).unwrap();
+            for (near, far) in narrow.points.iter().zip(&whole_spread.points) {
+                let shrunk: Vec<Surd> = far.iter().map(|entry| entry.clone() * third.clone()).collect();
+                assert_eq!(near, &shrunk);
+            }
+        }
     }
 }
 
@@ -749,6 +771,28 @@ fn inner_products_are_counted_as_the_points_have_them() {
     }
 }
 
+/// A harmonic sum is Σₘ (Σₛ wₛ Yₘ(s))² up to a positive factor: never negative, and zero only where all harmonics of the degree are right.
+#[test]
+fn a_harmonic_sum_is_a_sum_of_squares() {
+    for n in 2..=8 {
+        let exact = whole(n);
+        let rules = [
+            on_axes(&exact, whole(0), &third_degree::axis_weight(&exact), exact.clone()),
+            on_axes_and_diagonals(&exact, &fifth_degree::diagonal_weight(&exact)),
+            on_simplex(&exact, &simplex::edge_weight(&exact)),
+        ];
+        for (rule, degree) in rules.iter().zip([3, 5, 5]) {
+            let sums: Vec<Rational> = (1..=4).map(|k| harmonic_sum(&exact, k, &rule.products)).collect();
+            assert!(
+                sums.iter().all(|sum| sum.is_positive() || sum.is_zero()),
+                "n = {n}: {sums:?}"
+            );
+            assert!(sums[..(degree - 1) / 2].iter().all(Zero::is_zero), "n = {n}: {sums:?}");
+        }
+        assert!(harmonic_sum(&exact, 2, &rules[0].products).is_positive(), "n = {n}");
+    }
+}
+
 #[test]
 fn harmonic_sums_and_moments_find_the_same_degree() {
     for n in 2..=8 {
@@ -1016,7 +1060,41 @@ fn positive_semidefinite_matrices_of_low_rank_are_accepted_and_indefinite_ones_r
     }
 }
 
+/// Three variances with full correlations but for one pair: elimination leaves pivots of zero with an entry beside them, which no
+/// semidefinite matrix has, whatever its sign and whatever the units. All numbers are powers of two and the like, so nothing is rounded.
+#[test]
+fn an_entry_beside_a_pivot_of_zero_is_refused_in_any_units() {
+    for exponent in [0, 30, -30] {
+        let unit = 2.0_f64.powi(exponent);
+        let units = SMatrix::from_diagonal(&Vector3::new(1.0, unit, unit));
+        for (entry, is_covariance) in [(1.0, true), (0.75, false), (1.25, false)] {
+            let correlations = matrix![1.0, 1.0, 1.0; 1.0, 1.0, entry; 1.0, entry, 1.0];
+            let covariance = units * correlations * units;
+            assert_eq!(is_positive_semidefinite(&covariance), is_covariance, "{entry}, {unit}");
+        }
+    }
+}
+
 // Motion
+
+/// An entry of the state is lacking where the motion makes it zero and no noise moves it; one of the two is not enough.
+#[test]
+fn a_mode_lacks_what_neither_motion_nor_noise_gives_it() {
+    let (nothing, all) = (SMatrix::<f64, 2, 2>::zeros(), SMatrix::<f64, 2, 2>::identity());
+    for (transition, noise, lacks) in [
+        (nothing, nothing, true),
+        (nothing, all, false),
+        (all, nothing, false),
+        (all, all, false),
+    ] {
+        let mode = Mode {
+            name: String::new(),
+            transition,
+            noise,
+        };
+        assert_eq!([mode.lacks(0), mode.lacks(1)], [lacks; 2]);
+    }
+}
 
 #[test]
 fn a_turn_of_rate_zero_is_constant_velocity() {

@@ -8,6 +8,7 @@
 // Doubles are compared exactly where they are given or rounded.
 #![allow(clippy::float_cmp)]
 
+use immaculate::filter::kalman::predicted_covariance;
 use immaculate::matrix::{check_positive_definite, ldl};
 use immaculate::model::acceleration::{
     acceleration_response, constant_acceleration, embedded_constant_velocity, embedded_velocity_response,
@@ -99,6 +100,22 @@ fn the_expansion_of_the_closed_loop_is_its_derivative() {
     let epsilon = unknown("e");
     assert_eq!(small.exact_expansion(&epsilon), small.closed_loop(&epsilon));
     assert_ne!(small.printed_expansion(&epsilon), small.closed_loop(&epsilon));
+}
+
+#[test]
+fn the_perturbed_closed_loop_is_that_of_the_moved_covariance() {
+    // Symbolic: ΔP is carried through the prediction as a covariance is, and the gain is the Kalman gain of what comes out.
+    let (problem, epsilon) = (perturbation(), unknown("e"));
+    let filter = Riccati {
+        transition: problem.transition.clone(),
+        measurement: problem.measurement.clone(),
+        noise: Matrix3::zeros(),
+        measurement_noise: Matrix1::new(problem.measurement_variance.clone()),
+    };
+    let change = predicted_covariance(&problem.transition, &problem.change, &filter.noise);
+    assert_eq!(problem.predicted_change(), change);
+    let moved = &problem.predicted + change * epsilon.clone();
+    assert_eq!(problem.closed_loop(&epsilon), filter.closed_loop(&filter.gain(&moved)));
 }
 
 #[test]

@@ -10,7 +10,7 @@
 use immaculate::matrix::is_finite;
 use immaculate::number::{
     Convention, Counting, Dual, Enclosure, Field, Polynomial, RandomRounding, Rational, RationalFunction, Real, Roots,
-    Surd,
+    Surd, Tally,
 };
 use nalgebra::{Matrix2, Matrix3, RowVector3, SMatrix, Vector2, Vector3};
 use num_traits::{One, Zero};
@@ -586,6 +586,41 @@ fn the_order_of_surds_is_exact_where_doubles_cannot_tell() {
     let square = Surd::integer(5) + Surd::integer(2) * root(6);
     assert!(sum.clone() * sum.clone() + tiny.clone() > square);
     assert!(sum.clone() * sum - tiny < square);
+}
+
+/// A dual number is decided where its value and its slope are; a number that counts has the value of the double, constants among them;
+/// and two tallies together have counted what both have.
+#[test]
+fn what_a_number_carries_takes_part() {
+    let (one, undecided) = (Rational::one(), Rational::undecided());
+    assert!(Dual::new(one.clone(), one.clone()).is_decided());
+    assert!(!Dual::new(one.clone(), undecided.clone()).is_decided() && !Dual::new(undecided, one).is_decided());
+    let (two, input) = (Counting::integer(2), Counting::input(2.0, Convention::Structural));
+    assert_eq!(
+        [-two, two - Counting::integer(5), -input].map(Counting::value),
+        [-2.0, -3.0, -2.0]
+    );
+    let (_, once) = Counting::count(|| (input * input + input / input).sqrt().exp());
+    let thrice = once.and(&once).and(&once);
+    let counts = |tally: Tally| {
+        [
+            tally.additions,
+            tally.multiplications,
+            tally.divisions,
+            tally.roots,
+            tally.functions,
+        ]
+    };
+    assert_eq!((counts(once), counts(thrice)), ([1; 5], [3; 5]));
+}
+
+/// A number that counts is written as the double that it is, and a dual number with its slope beside ε, in the width that is asked for.
+#[test]
+fn numbers_that_carry_something_say_what() {
+    let counted = Counting::input(2.5, Convention::Dense);
+    assert_eq!(format!("{counted:6.2} {counted:?}"), "  2.50 2.5");
+    let dual = Dual::new(Rational::new(1, 2), Rational::new(3, 1));
+    assert_eq!(format!("{dual:>14}"), "    1/2 + (3)ε");
 }
 
 #[test]

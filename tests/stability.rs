@@ -18,7 +18,7 @@ use immaculate::number::{Enclosure, Field, Rational, RationalFunction, Real};
 use immaculate::oracle::certificate::{CertificateFile, FiltersFile, InvalidCertificate, Noises, ProofFile};
 use immaculate::paper::derbez2000::instances;
 use immaculate::paper::monte_carlo::Generator;
-use immaculate::steady::certificate::{NotProven, Product, Quadratics};
+use immaculate::steady::certificate::{Edge, NotProven, Product, Quadratics};
 use immaculate::steady::gains;
 use immaculate::steady::linear::{solve, stein};
 use immaculate::steady::map::Map;
@@ -257,6 +257,31 @@ fn the_stein_equation_is_solved_exactly() {
     assert_eq!(stein(&a, &SMatrix::identity()), None);
 }
 
+/// Exact: what is not seen has a polynomial of its own, whatever coordinates the state is written in. Here the hidden parts are those of a
+/// diagonal motion, and the coordinates T have no ones to divide by.
+#[test]
+fn what_is_not_seen_does_not_depend_on_the_coordinates() {
+    let motion = rationals([["1/2", "0", "0"], ["0", "3", "0"], ["0", "0", "-5"]]);
+    let coordinates = rationals([["2", "3", "1"], ["-4", "5", "7"], ["3", "-2", "6"]]);
+    let inverse = solve(rows_of(&coordinates), rows_of(&SMatrix::<Rational, 3, 3>::identity())).unwrap();
+    let inverse = SMatrix::<Rational, 3, 3>::from_fn(|i, j| inverse[i][j].clone());
+    assert_eq!(coordinates.clone() * &inverse, SMatrix::<Rational, 3, 3>::identity());
+    let turned = &coordinates * motion * &inverse;
+    for (sensor, unseen) in [
+        ([["7", "0", "0"]], "λ^2 + 2λ − 15"),
+        ([["0", "2", "0"]], "λ^2 + 9/2λ − 5/2"),
+        ([["3", "2", "0"]], "λ + 5"),
+        ([["3", "0", "2"]], "λ − 3"),
+        ([["3", "2", "-4"]], "1"),
+    ] {
+        let sensor = rationals::<1, 3>(sensor) * &inverse;
+        assert_eq!(
+            polynomial_text(&unseen_part(&rows_of(&turned), &rows_of(&sensor))),
+            unseen
+        );
+    }
+}
+
 #[test]
 fn what_is_not_seen_and_does_not_decay_is_named() {
     let part = |motion, sensor: [[&str; 3]; 1]| {
@@ -371,6 +396,30 @@ fn a_spoilt_bound_proves_nothing() {
     // A filter that is not this one.
     let other = coordinate(constant_acceleration(&t), &acceleration_response(&t), "5", "1/2");
     assert!(proof.check(&other).is_err());
+}
+
+/// Exact: every entry of a covariance between the bounds is inside, those of the bounds themselves among them. U − L is of rank one, so that
+/// no entry off the diagonal could be greater, and of entries of very different size.
+#[test]
+fn an_entry_of_the_steady_state_has_room_for_both_bounds() {
+    let lower = rationals([["1", "1/3"], ["1/3", "1"]]);
+    for direction in [["2", "1"], ["-1", "1000"], ["1/3", "-1/7"]] {
+        let direction = rationals([direction]);
+        let upper = &lower + direction.transpose() * &direction;
+        let bounds = SteadyState {
+            lower: lower.clone(),
+            upper: upper.clone(),
+        };
+        Enclosure::with_precision(100, || {
+            for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                let entry = bounds.entry(i, j);
+                assert!(
+                    entry.contains(&lower[(i, j)]) && entry.contains(&upper[(i, j)]),
+                    "{i}, {j}: {entry}"
+                );
+            }
+        });
+    }
 }
 
 #[test]
@@ -542,6 +591,51 @@ fn a_product_of_two_stable_filters_is_unstable() {
         radius: rational("109/100"),
     };
     assert_eq!(other.check(&matrices), Err(NotProven::Below { decided: true }));
+    // A word has letters, and each is one of the matrices.
+    for word in [Vec::new(), vec![2], vec![1, 2, 0]] {
+        let radius = rational("109/100");
+        assert_eq!(Product { word, radius }.check(&matrices), Err(NotProven::Word));
+    }
+}
+
+#[test]
+fn a_graph_has_only_nodes_and_letters_that_are_there() {
+    let matrices = [Matrix3::<Rational>::zeros()];
+    let graph = |edges: Vec<Edge>| Quadratics {
+        edges,
+        forms: vec![Matrix3::identity()],
+    };
+    let (from, letter, to) = (0, 0, 0);
+    let good = Edge { from, letter, to };
+    assert_eq!(graph(vec![good]).check(&matrices), Ok(()));
+    for bad in [
+        Edge { from: 1, ..good },
+        Edge { letter: 1, ..good },
+        Edge { to: 1, ..good },
+    ] {
+        assert_eq!(
+            graph(vec![good, bad]).check(&matrices),
+            Err(NotProven::Edge { edge: 1 })
+        );
+    }
+}
+
+/// Exact: forms that remember two letters stand at the words ab, and the letter c leads from ab to bc.
+#[test]
+fn a_graph_that_remembers_goes_from_the_last_letters_to_the_next_ones() {
+    for letters in [2, 3] {
+        let edges = Quadratics::<3>::memory(letters, 2);
+        assert_eq!(edges.len(), letters.pow(3));
+        for (a, b, c) in (0..letters).flat_map(|a| (0..letters).flat_map(move |b| (0..letters).map(move |c| (a, b, c))))
+        {
+            let expected = Edge {
+                from: a * letters + b,
+                letter: c,
+                to: b * letters + c,
+            };
+            assert!(edges.contains(&expected), "{expected:?}");
+        }
+    }
 }
 
 #[test]
@@ -550,6 +644,7 @@ fn a_convex_combination_of_stable_matrices_is_unstable() {
     let a = rationals([["1/2", "10"], ["0", "1/2"]]);
     let half = rational("1/2");
     let mean = remark_1_matrix(&[half.clone(), half], &[a.clone(), a.transpose()]);
+    assert_eq!(mean, rationals([["1/2", "5"], ["5", "1/2"]]));
     assert_eq!(has_radius_below(&rows_of(&a), &rational("51/100")), Some(true));
     assert_eq!(has_radius_below(&rows_of(&mean), &rational("11/2")), Some(false));
 }

@@ -17,13 +17,67 @@ use immaculate::paper::specification::Choices;
 use immaculate::statistics::Estimate;
 use immaculate::statistics::consistency::{bounds, nees, nis};
 use immaculate::statistics::delay::detection_delays;
-use immaculate::statistics::estimate::{mean, paired_difference, root_mean_square};
+use immaculate::statistics::estimate::{figure, mean, paired_difference, root_mean_square};
 use immaculate::statistics::rmse;
 use nalgebra::{Vector4, matrix, vector};
 use quickcheck::QuickCheck;
 use std::time::Duration;
 
 // Errors
+
+/// Exact: 7 ± 2 is three standard errors above 1 and two below 11.
+#[test]
+fn a_distance_is_counted_in_standard_errors() {
+    let estimate = Estimate {
+        value: 7.0,
+        standard_error: 2.0,
+    };
+    assert_eq!(
+        [1.0, 7.0, 11.0].map(|value| estimate.distance_from(value)),
+        [3.0, 0.0, -2.0]
+    );
+}
+
+/// Exact, as every number here has few digits: a standard error does not know where zero is, however far away. Squares about zero would
+/// lose the digits.
+#[test]
+fn a_standard_error_does_not_depend_on_where_zero_is() {
+    let values = [-3.0, -1.0, 1.0, 3.0].map(|value| value / 1024.0);
+    let moved = values.map(|value| value + 2.0_f64.powi(41));
+    assert_eq!(mean(&moved).standard_error, mean(&values).standard_error);
+    assert_eq!(mean(&moved).value, 2.0_f64.powi(41));
+}
+
+/// Exact: four significant digits, as long as they stand beside the point.
+#[test]
+fn a_figure_has_four_significant_digits() {
+    let figures = [
+        12_345.6,
+        1234.56,
+        12.3456,
+        0.012_345_6,
+        1.234_56e-4,
+        1.234_56e-5,
+        999_999.0,
+        1e6,
+        0.0,
+        f64::NAN,
+    ];
+    let written = figures.map(figure);
+    let expected = [
+        "12346",
+        "1235",
+        "12.35",
+        "0.01235",
+        "0.0001235",
+        "1.23e-5",
+        "999999",
+        "1.00e6",
+        "0",
+        "—",
+    ];
+    assert_eq!(written, expected);
+}
 
 #[test]
 fn printed_rmse_is_not_the_root_mean_square_over_runs() {

@@ -4,9 +4,12 @@
 //! variant is run in doubles beside the filter itself on small problems with generic numbers, on which no two terms are alike by chance,
 //! and the first value that differs must be of the quantity that its row names. Kind of evidence: oracle.
 
+use immaculate::filter::converted::{converted_covariance, polar_position};
 use immaculate::filter::fixed_gain::FixedGain;
-use immaculate::gaussian::Gaussian;
+use immaculate::gaussian::{Gaussian, log_density};
+use immaculate::imm::quantity::Input;
 use immaculate::imm::{Equations, Initial, Problem, Quantity, Scope};
+use immaculate::matrix::ldl;
 use immaculate::model::motion::Mode;
 use immaculate::model::{Conversion, Measurement, PolarComponent};
 use immaculate::number::Enclosure;
@@ -279,6 +282,200 @@ fn every_square_root_gives_the_same_filter_on_a_linear_problem() {
         let found = varied(setup.clone(), &[id]).run().values;
         assert_eq!(first_change(&expected, &found, ROUNDING), None, "{id}");
         assert_eq!(expected.count(), found.count());
+    }
+}
+
+/// Where nothing was measured, the noise that a converting filter would have used is known only where it expected the measurement: at the
+/// combined prediction. By P⁻ − P⁻ Hᵀ (H P⁻ Hᵀ + R^c)⁻¹ H P⁻ on the run's own values, with nalgebra's inverse.
+#[test]
+fn a_covariance_updated_without_a_detection_uses_the_converted_noise_at_the_prediction() {
+    let setup = varied(
+        converted(Conversion::Standard),
+        &["missed-detection-updates-the-covariance"],
+    );
+    let step = 1 + setup.measurements.iter().position(Option::is_none).unwrap();
+    let run = setup.run().values;
+    let Problem {
+        measurement,
+        measurement_noise,
+        ..
+    } = &setup.problem;
+    let prediction = run.get(step, Quantity::CombinedPredictionMean, 0).unwrap();
+    let at = polar_position(measurement, &SVector::from_column_slice(prediction));
+    let (h, noise) = (
+        measurement.matrix(),
+        converted_covariance(measurement, &at, measurement_noise),
+    );
+    for j in 0..setup.problem.modes.len() {
+        let of_mode = |quantity| SMatrix::<f64, 4, 4>::from_row_slice(run.get(step, quantity, j).unwrap());
+        let predicted = of_mode(Quantity::PredictedCovariance);
+        let gain = predicted * h.transpose() * (h * predicted * h.transpose() + noise).try_inverse().unwrap();
+        let expected = predicted - gain * h * predicted;
+        let found = of_mode(Quantity::UpdatedCovariance);
+        assert!(
+            (found - expected).amax() < ROUNDING * predicted.amax(),
+            "mode {j}: {found} {expected}"
+        );
+        // R itself, in metres and radians, is another noise.
+        let gain = predicted
+            * h.transpose()
+            * (h * predicted * h.transpose() + measurement_noise)
+                .try_inverse()
+                .unwrap();
+        assert!((found - (predicted - gain * h * predicted)).amax() > CHANGE * predicted.amax());
+    }
+}
+
+/// The judge looks for the cause of a wrong value among the values that it is computed from. So these are found out: along shown values, one
+/// of which is moved, exactly those move that are computed from it.
+#[test]
+fn a_value_is_computed_from_its_inputs_and_from_nothing_else() {
+    let (mut seen, mut declared) = (BTreeSet::new(), BTreeSet::new());
+    for setup in [
+        linear(3),
+        polar("cubature-3"),
+        converted(Conversion::Standard),
+        fixed(&Equations::fixed_gain()),
+    ] {
+        let scope = Scope {
+            covariances: setup.equations.keeps_covariances,
+            conversions: setup.equations.converts,
+        };
+        let shown = setup.run().values;
+        let before = setup.run_along(&shown, |value| value, Triangle::Lower).values;
+        let is_detected = |step: usize| setup.measurements[step - 1].is_some();
+        let exists =
+            |step, quantity: Quantity| scope.has(quantity) && (is_detected(step) || !quantity.needs_detection());
+        let pair = |step, quantity: Quantity, input: Input| {
+            (quantity, format!("{input:?}"), is_detected(step), scope.covariances)
+        };
+        for (step, moved, mode) in shown.all_places() {
+            assert_eq!(shown.get(step, moved, mode).is_some(), exists(step, moved), "{moved:?}");
+            let Some(values) = shown.get(step, moved, mode) else {
+                continue;
+            };
+            let mut other = shown.clone();
+            other.set(
+                step,
+                moved,
+                mode,
+                values.iter().map(|value| value * 1.001 + 1e-4).collect(),
+            );
+            let after = setup.run_along(&other, |value| value, Triangle::Lower).values;
+            for place in before.all_places() {
+                let (of_step, quantity, _) = place;
+                let input = if of_step == step {
+                    Input::Now(moved)
+                } else {
+                    Input::Before(moved)
+                };
+                let is_next = of_step == step || of_step == step + 1;
+                let is_declared = is_next
+                    && quantity
+                        .inputs(is_detected(of_step), scope)
+                        .any(|declared| declared == input);
+                if is_declared && exists(of_step, quantity) {
+                    declared.insert(pair(of_step, quantity, input));
+                }
+                if differs(&before, &after, place, ROUNDING) {
+                    assert!(is_declared, "{quantity:?} is computed from {input:?}");
+                    seen.insert(pair(of_step, quantity, input));
+                }
+            }
+        }
+    }
+    // What is declared and without effect: points about a mean have this mean, however far they are from it; and where deviations sum to
+    // zero, it does not matter about which point the others are taken.
+    let hidden = [
+        (
+            Quantity::PredictedMean,
+            Input::Now(Quantity::MixedCovariance),
+            false,
+            true,
+        ),
+        (
+            Quantity::PredictedMean,
+            Input::Now(Quantity::MixedCovariance),
+            true,
+            true,
+        ),
+        (
+            Quantity::CrossCovariance,
+            Input::Now(Quantity::PredictedMeasurement),
+            true,
+            true,
+        ),
+    ];
+    let hidden = hidden
+        .map(|(quantity, input, is_detected, covariances)| (quantity, format!("{input:?}"), is_detected, covariances));
+    let unseen: Vec<_> = declared.difference(&seen).cloned().collect();
+    assert_eq!(unseen, hidden);
+}
+
+/// What is computed without a detection is computed from what is there without one.
+#[test]
+fn without_a_detection_nothing_is_computed_from_one() {
+    let exists = |quantity: &Quantity| !quantity.needs_detection();
+    for (covariances, conversions) in [(true, true), (true, false), (false, false)] {
+        let scope = Scope {
+            covariances,
+            conversions,
+        };
+        for quantity in Quantity::ALL
+            .into_iter()
+            .filter(|quantity| scope.has(*quantity) && exists(quantity))
+        {
+            for Input::Now(input) | Input::Before(input) in quantity.inputs(false, scope) {
+                assert!(exists(&input) && scope.has(input), "{quantity:?} from {input:?}");
+            }
+        }
+    }
+}
+
+/// Of the quantities of two rows and two columns exactly the covariances are symmetric, where a problem's numbers are generic.
+#[test]
+fn the_covariances_are_the_symmetric_matrices() {
+    let measurement = Measurement::Linear(matrix(70, 0.3) + SMatrix::identity());
+    let run = generic::<2, 2>(3, measurement).run().values;
+    let mut symmetric = BTreeSet::new();
+    for (step, quantity, mode) in run.all_places() {
+        if let (2, Some(values)) = (quantity.rank(), run.get(step, quantity, mode)) {
+            let is_symmetric = (values[1] - values[2]).abs() <= ROUNDING * values[1].abs();
+            assert_eq!(is_symmetric, quantity.is_covariance(), "{quantity:?}");
+            symmetric.insert(quantity);
+        }
+    }
+    assert!(symmetric.contains(&Quantity::Gain) && symmetric.contains(&Quantity::CombinedCovariance));
+}
+
+/// What a filter measures is what it uses: the converted measurement where it converts. An innovation reversed is the innovation with the other
+/// sign, to the last bit, and the residual of the updated mean is z − H x̂ = ν + ẑ − H x̂.
+#[test]
+fn the_residuals_of_variants_are_of_what_the_filter_uses() {
+    for setup in [linear(3), converted(Conversion::Standard)] {
+        let shown = setup.run().values;
+        let along = |id| {
+            let varied = varied(setup.clone(), &[id]);
+            varied.run_along(&shown, |value| value, Triangle::Lower).values
+        };
+        let (reversed, updated) = (along("innovation-reversed"), along("likelihood-of-updated-residual"));
+        let innovations = shown.all_places().filter(|place| place.1 == Quantity::Innovation);
+        for (step, quantity, j) in innovations.filter(|place| setup.measurements[place.0 - 1].is_some()) {
+            let values = |quantity| shown.get(step, quantity, j).unwrap();
+            let negative: Vec<f64> = values(quantity).iter().map(|value| -value).collect();
+            assert_eq!(reversed.get(step, quantity, j), Some(&negative));
+            let vector = |quantity| SVector::<f64, 2>::from_column_slice(values(quantity));
+            let mean = SVector::<f64, 4>::from_column_slice(values(Quantity::UpdatedMean));
+            let predicted = vector(Quantity::PredictedMeasurement);
+            let residual = vector(quantity) + predicted - setup.problem.measurement.matrix() * mean;
+            let covariance = SMatrix::<f64, 2, 2>::from_row_slice(values(Quantity::InnovationCovariance));
+            let expected = log_density(&residual, &ldl(&covariance));
+            let found = updated.get(step, Quantity::LogLikelihood, j).unwrap()[0];
+            assert!(
+                (found - expected).abs() < ROUNDING * expected.abs(),
+                "{found} {expected}"
+            );
+        }
     }
 }
 
