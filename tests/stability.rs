@@ -398,8 +398,8 @@ fn a_spoilt_bound_proves_nothing() {
     assert!(proof.check(&other).is_err());
 }
 
-/// Exact: every entry of a covariance between the bounds is inside, those of the bounds themselves among them. U − L is of rank one, so that
-/// no entry off the diagonal could be greater, and of entries of very different size.
+/// Exact: every entry of a covariance between the bounds is inside, those of the bounds themselves among them. U − L is of rank one, so
+/// that no entry off the diagonal could be greater, and of entries of very different size.
 #[test]
 fn an_entry_of_the_steady_state_has_room_for_both_bounds() {
     let lower = rationals([["1", "1/3"], ["1/3", "1"]]);
