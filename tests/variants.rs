@@ -326,8 +326,8 @@ fn a_covariance_updated_without_a_detection_uses_the_converted_noise_at_the_pred
     }
 }
 
-/// The judge looks for the cause of a wrong value among the values that it is computed from. So these are found out: along shown values, one
-/// of which is moved, exactly those move that are computed from it.
+/// The judge looks for the cause of a wrong value among the values that it is computed from. So these are found out: along shown values,
+/// one of which is moved, exactly those move that are computed from it.
 #[test]
 fn a_value_is_computed_from_its_inputs_and_from_nothing_else() {
     let (mut seen, mut declared) = (BTreeSet::new(), BTreeSet::new());
@@ -448,8 +448,8 @@ fn the_covariances_are_the_symmetric_matrices() {
     assert!(symmetric.contains(&Quantity::Gain) && symmetric.contains(&Quantity::CombinedCovariance));
 }
 
-/// What a filter measures is what it uses: the converted measurement where it converts. An innovation reversed is the innovation with the other
-/// sign, to the last bit, and the residual of the updated mean is z − H x̂ = ν + ẑ − H x̂.
+/// What a filter measures is what it uses: the converted measurement where it converts. An innovation reversed is the innovation with the
+/// other sign, to the last bit, and the residual of the updated mean is z − H x̂ = ν + ẑ − H x̂.
 #[test]
 fn the_residuals_of_variants_are_of_what_the_filter_uses() {
     for setup in [linear(3), converted(Conversion::Standard)] {
