@@ -9,21 +9,17 @@ use super::doc::PartKind;
 use super::markup::{formula, paragraphs, sentence, table};
 use super::{Entry, Realisation, entries, entries_of, realisations};
 use crate::paper::Paper;
-use crate::paper::specification::{Authors, Erratum};
+use crate::paper::specification::Erratum;
 use maud::{Markup, html};
 
 /// The equations of a paper.
 pub fn chapter(paper: Paper) -> Markup {
     let of = &paper.specification().paper;
-    let authors = match &of.authors {
-        Authors::One(name) => name.clone(),
-        Authors::Many(names) => names.join(", "),
-    };
     html! {
         section class="chapter" id={ "book-" (paper.key()) } {
             h3 { (paper.key()) ": " (of.title) }
             p class="citation" {
-                (authors) ". " (of.venue) "."
+                (of.authors) ". " (of.venue) "."
                 @if !of.doi.is_empty() { " doi:" (of.doi) "." }
             }
             @for entry in entries_of(paper) { (section(entry)) }

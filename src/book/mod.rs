@@ -107,7 +107,12 @@ pub fn entries() -> &'static [Entry] {
     static ENTRIES: LazyLock<Vec<Entry>> = LazyLock::new(|| {
         let papers = Paper::ALL.into_iter();
         papers
-            .flat_map(|paper| rows(paper).map(move |equation| entry(paper, equation)))
+            .flat_map(|paper| {
+                paper
+                    .specification()
+                    .all_equations()
+                    .map(move |equation| entry(paper, equation))
+            })
             .collect()
     });
     &ENTRIES
@@ -134,11 +139,6 @@ pub fn realisations() -> &'static [Realisation] {
             .collect()
     });
     &REALISATIONS
-}
-
-fn rows(paper: Paper) -> impl Iterator<Item = &'static Equation> {
-    let specification = paper.specification();
-    specification.equations.iter().chain(&specification.unnumbered)
 }
 
 fn entry(paper: Paper, equation: &'static Equation) -> Entry {

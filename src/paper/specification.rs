@@ -52,6 +52,15 @@ pub enum Authors {
     Many(Vec<String>),
 }
 
+impl std::fmt::Display for Authors {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self {
+            Self::One(author) => f.write_str(author),
+            Self::Many(authors) => f.write_str(&authors.join(", ")),
+        }
+    }
+}
+
 /// An equation of a paper.
 #[derive(Debug, Clone, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
@@ -80,16 +89,6 @@ pub struct Equation {
     pub outside: Option<String>,
     /// What is wrong as printed.
     pub erratum: Option<Erratum>,
-}
-
-impl Equation {
-    /// The printed number in parentheses, or the name where there is none.
-    pub fn label(&self) -> String {
-        match (self.number, &self.name) {
-            (Some(number), _) => format!("({number})"),
-            (None, name) => name.clone().unwrap_or_default(),
-        }
-    }
 }
 
 /// What is wrong with an equation as printed.

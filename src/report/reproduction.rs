@@ -145,7 +145,7 @@ pub fn text(paper: Paper, reproduction: &Reproduction) -> String {
     text
 }
 
-const DIFFERENCE_NOTE: &str = "\
+pub(super) const DIFFERENCE_NOTE: &str = "\
 Difference: computed minus published, in standard errors of the computed figure. The published one has its own, about as
 large, so that up to some 4 the two agree.
 ";
@@ -174,15 +174,18 @@ fn head(specification: &Specification, reproduction: &Reproduction) -> String {
     )
 }
 
+/// What each column is where published figures stand beside computed ones.
+pub(super) const HEADER: [&str; 6] = [
+    "",
+    "filter",
+    "published",
+    "computed",
+    "standard error",
+    "difference / s.e.",
+];
+
 fn errors(comparisons: &[Comparison]) -> comfy_table::Table {
-    let mut table = table(&[
-        "",
-        "filter",
-        "published",
-        "computed",
-        "standard error",
-        "difference / s.e.",
-    ]);
+    let mut table = table(&HEADER);
     if let Some(column) = table.column_mut(1) {
         column.set_cell_alignment(comfy_table::CellAlignment::Left);
     }

@@ -7,7 +7,7 @@ use super::table::{framed, table};
 use super::{errata, figures, ledger};
 use crate::paper::Paper;
 use crate::paper::result::{Quantity, Reproduction};
-use crate::paper::specification::{Authors, Citation, Table};
+use crate::paper::specification::{Citation, Table};
 use crate::report::chart::NotDrawn;
 use crate::report::reproduction::{self, Comparison, compare};
 use crate::report::standard_errors;
@@ -44,13 +44,9 @@ pub fn section(of_paper: &OfPaper, content: &Content) -> Result<Markup, NotDrawn
 }
 
 fn citation(paper: &Citation) -> Markup {
-    let authors = match &paper.authors {
-        Authors::One(author) => author.clone(),
-        Authors::Many(authors) => authors.join(", "),
-    };
     html! {
         p.citation {
-            (authors) ". " (paper.venue)
+            (paper.authors) ". " (paper.venue)
             @if !paper.doi.is_empty() { ", " a href=(format!("https://doi.org/{}", paper.doi)) { "doi:" (paper.doi) } }
             "."
         }
@@ -115,28 +111,17 @@ fn side_by_side(published: &Table, comparisons: &[Comparison]) -> Markup {
         "Table {} of the paper, published beside computed. {}",
         published.number, published.caption
     );
-    let header = [
-        "",
-        "filter",
-        "published",
-        "computed",
-        "standard error",
-        "difference / s.e.",
-    ];
     framed(
         &caption,
         &html! {
             table.numbers {
                 caption { (caption) }
-                thead { tr { @for cell in header { th scope="col" { (cell) } } } }
+                thead { tr { @for cell in reproduction::HEADER { th scope="col" { (cell) } } } }
                 @for row in comparisons.chunk_by(|one, other| one.row == other.row) {
                     tbody { (rows_of(row)) }
                 }
             }
-            p.note {
-                "Difference: computed minus published, in standard errors of the computed figure. The published one has its own, about as "
-                "large, so that up to some 4 the two agree."
-            }
+            p.note { (reproduction::DIFFERENCE_NOTE) }
         },
     )
 }
