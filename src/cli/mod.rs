@@ -5,9 +5,12 @@
 pub mod answer;
 pub mod cases;
 pub mod check;
+pub mod choices;
+pub mod claims;
 pub mod equation;
 pub mod report;
 pub mod reproduce;
+pub mod rule;
 pub mod stability;
 pub mod sweep;
 pub mod trace;
