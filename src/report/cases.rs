@@ -82,12 +82,12 @@ pub fn verified(outcomes: &[Verified]) -> String {
                 good += 1;
                 rejected += 1;
             }
-            Err(bad) => wrong.push_str(&wrapped(&format!("WRONG  {bad}"), "")),
+            Err(bad) => wrong.push_str(&wrapped(&format!("WRONG: {bad}"), "")),
         }
     }
     format!(
         "{table}\n{wrong}{good} of {} cases proven again: {values} numbers, each the double nearest to the exact value; \
-         {rejected} of the cases must be rejected, and are\n",
+         rejected, as they must be: {rejected}\n",
         outcomes.len()
     )
 }

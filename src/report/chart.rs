@@ -24,10 +24,6 @@ impl NotDrawn {
     }
 }
 
-pub(super) fn not_drawn(error: impl std::fmt::Display) -> NotDrawn {
-    NotDrawn::because(error)
-}
-
 /// The width of every figure.
 pub const WIDTH: u32 = 720;
 /// Sizes of letters, pixels.
@@ -125,7 +121,7 @@ pub(super) fn figure(
     let mut svg = String::new();
     {
         let root = SVGBackend::with_string(&mut svg, (WIDTH, top + height)).into_drawing_area();
-        root.fill(&PAPER).map_err(not_drawn)?;
+        root.fill(&PAPER).map_err(NotDrawn::because)?;
         for (row, line) in titles.iter().enumerate() {
             write(&root, line, (12, 10 + pixels(row, 26)), letters(TITLE))?;
         }
@@ -140,13 +136,13 @@ pub(super) fn figure(
         }
         let (_, area) = root.split_vertically(top);
         body(&area)?;
-        root.present().map_err(not_drawn)?;
+        root.present().map_err(NotDrawn::because)?;
     }
     Ok(with_words(&svg, caption))
 }
 
 fn write(area: &Area, words: &str, place: (i32, i32), style: TextStyle) -> Drawn {
-    area.draw(&Text::new(words, place, style)).map_err(not_drawn)
+    area.draw(&Text::new(words, place, style)).map_err(NotDrawn::because)
 }
 
 /// A text in lines that fit the figure. A letter is taken to be 0.54 of its size wide.
@@ -175,7 +171,7 @@ fn legend_places(legend: &[(String, Key)]) -> Vec<(i32, i32)> {
 fn draw_key(area: &Area, key: &Key, (x, y): (i32, i32)) -> Drawn {
     let line = |from: i32, to: i32, style: ShapeStyle| {
         area.draw(&PathElement::new(vec![(x + from, y), (x + to, y)], style))
-            .map_err(not_drawn)
+            .map_err(NotDrawn::because)
     };
     match key {
         Key::Line(look) => {
@@ -188,12 +184,12 @@ fn draw_key(area: &Area, key: &Key, (x, y): (i32, i32)) -> Drawn {
             .try_for_each(|from| line(from, (from + dash).min(38), colour.stroke_width(2))),
         Key::Dot(colour) => area
             .draw(&Circle::new((x + 19, y), 3, colour.filled()))
-            .map_err(not_drawn),
+            .map_err(NotDrawn::because),
         Key::Mark(colour, shape) => draw_marker(area, (x + 19, y), *colour, *shape),
         Key::Area(colour, opacity) => {
             let corners = [(x, y - 8), (x + 38, y + 8)];
             area.draw(&Rectangle::new(corners, colour.mix(*opacity).filled()))
-                .map_err(not_drawn)
+                .map_err(NotDrawn::because)
         }
     }
 }
@@ -224,7 +220,7 @@ fn draw_marker(area: &Area, (x, y): (i32, i32), colour: RGBColor, shape: usize) 
     for (size, colour) in [(8, PAPER), (6, colour)] {
         let corners = marker(shape, size).into_iter().map(|(dx, dy)| (x + dx, y + dy));
         let polygon = Polygon::new(corners.collect::<Vec<_>>(), colour.filled());
-        area.draw(&polygon).map_err(not_drawn)?;
+        area.draw(&polygon).map_err(NotDrawn::because)?;
     }
     Ok(())
 }
@@ -302,12 +298,12 @@ pub(super) fn panel<'a>(
     }
     let mut chart = builder
         .build_cartesian_2d(x.range.clone(), y.range.clone())
-        .map_err(not_drawn)?;
+        .map_err(NotDrawn::because)?;
     let shades = shaded.iter().map(|part| {
         let corners = [(part.start, y.range.start), (part.end, y.range.end)];
         Rectangle::new(corners, SHADE.filled())
     });
-    chart.draw_series(shades).map_err(not_drawn)?;
+    chart.draw_series(shades).map_err(NotDrawn::because)?;
     let mut mesh = chart.configure_mesh();
     mesh.light_line_style(TRANSPARENT)
         .bold_line_style(GRID)
@@ -328,7 +324,7 @@ pub(super) fn panel<'a>(
     mesh.x_label_formatter(&|value| x_format(*value))
         .y_label_formatter(&|value| y_format(*value))
         .draw()
-        .map_err(not_drawn)?;
+        .map_err(NotDrawn::because)?;
     Ok(chart)
 }
 
@@ -379,7 +375,7 @@ pub(super) fn draw_lines(chart: &mut Chart, lines: &[Line]) -> Drawn {
         let outline = distinct(chart, outline);
         if outline.len() > 2 {
             let band = Polygon::new(outline, line.look.colour.mix(0.25));
-            chart.draw_series([band]).map_err(not_drawn)?;
+            chart.draw_series([band]).map_err(NotDrawn::because)?;
         }
     }
     for line in lines {
@@ -404,7 +400,7 @@ pub(super) fn draw_lines(chart: &mut Chart, lines: &[Line]) -> Drawn {
 fn draw_at(chart: &mut Chart, place: (f64, f64), look: Look) -> Drawn {
     for (size, colour) in [(8, PAPER), (6, look.colour)] {
         let mark = EmptyElement::at(place) + Polygon::new(marker(look.shape, size), colour.filled());
-        chart.draw_series([mark]).map_err(not_drawn)?;
+        chart.draw_series([mark]).map_err(NotDrawn::because)?;
     }
     Ok(())
 }
@@ -413,7 +409,7 @@ fn draw_at(chart: &mut Chart, place: (f64, f64), look: Look) -> Drawn {
 pub(super) fn draw_path(chart: &mut Chart, points: Vec<(f64, f64)>, colour: RGBColor, width: u32) -> Drawn {
     let points = distinct(chart, points);
     let line = LineSeries::new(points, colour.stroke_width(width));
-    chart.draw_series(line).map_err(not_drawn)?;
+    chart.draw_series(line).map_err(NotDrawn::because)?;
     Ok(())
 }
 
@@ -421,7 +417,7 @@ pub(super) fn draw_path(chart: &mut Chart, points: Vec<(f64, f64)>, colour: RGBC
 pub(super) fn draw_dots(chart: &mut Chart, points: Vec<(f64, f64)>, colour: RGBColor) -> Drawn {
     let points = distinct(chart, points).into_iter();
     let dots = points.map(|place| Circle::new(place, 2, colour.filled()));
-    chart.draw_series(dots).map_err(not_drawn)?;
+    chart.draw_series(dots).map_err(NotDrawn::because)?;
     Ok(())
 }
 
@@ -445,7 +441,7 @@ pub(super) fn draw_cells(chart: &mut Chart, [x, y]: [&[f64]; 2], colour: impl Fn
         for same in colours.chunk_by(|a, b| a == b) {
             let corners = [(x[column], y[row]), (x[column + same.len()], y[row + 1])];
             let cell = Rectangle::new(corners, same[0].filled());
-            chart.draw_series([cell]).map_err(not_drawn)?;
+            chart.draw_series([cell]).map_err(NotDrawn::because)?;
             column += same.len();
         }
     }

@@ -19,7 +19,7 @@ pub fn text(report: &Report) -> String {
     text.push_str(&failures(report));
     text.push_str(&diagnosis(&report.diagnosis));
     for remark in &report.remarks {
-        text.push_str(&wrapped(&format!("REMARK  {remark}"), ""));
+        let _ = write!(text, "\nREMARK\n{}", wrapped(remark, "  "));
     }
     text.push_str(&coverage(report));
     text.push_str(&summary(report));
@@ -163,7 +163,7 @@ fn first_fault(case: &CaseReport, judged: &Judged, report: &Report) -> String {
         "infinitely many times".into()
     };
     format!(
-        "{place}{} is {}, and should be {} by the program's own values before it: off by {:.2e} {}, {noise} the rounding noise of {}.",
+        "{place}{} is {}, and should be {} by the program's own values before it: off by {:.2e}{}, {noise} the rounding noise of {}.",
         entry(judged, own.index, case),
         number(own.shown),
         number(own.expected),
@@ -189,7 +189,7 @@ fn failures(report: &Report) -> String {
         text.push_str(&wrapped(failure, "  "));
     }
     if failed.len() > 3 {
-        let _ = writeln!(text, "  and in {} more cases.", failed.len() - 3);
+        let _ = writeln!(text, "  And so it is in {} more of the cases.", failed.len() - 3);
     }
     text
 }
@@ -394,16 +394,16 @@ fn number(value: f64) -> String {
     }
 }
 
-/// In what a quantity's errors are counted.
+/// In what a quantity's errors are counted, after a blank; nothing where they are counted in themselves.
 fn unit(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::PredictedModeProbabilities | Quantity::MixingProbabilities | Quantity::ModeProbabilities => {
-            "of itself"
+            " of itself"
         }
         Quantity::LogLikelihood => "",
-        Quantity::Gain => "√(Pᵢᵢ/Sⱼⱼ)",
-        Quantity::CrossCovariance => "√(Pᵢᵢ Sⱼⱼ)",
-        quantity if quantity.is_covariance() => "√(Pᵢᵢ Pⱼⱼ)",
-        _ => "standard deviations",
+        Quantity::Gain => " √(Pᵢᵢ/Sⱼⱼ)",
+        Quantity::CrossCovariance => " √(Pᵢᵢ Sⱼⱼ)",
+        quantity if quantity.is_covariance() => " √(Pᵢᵢ Pⱼⱼ)",
+        _ => " standard deviations",
     }
 }

@@ -4,9 +4,7 @@
 //! textbook means, and on which side of it the radar of sustika2015 is. The numbers are the closed forms of
 //! [`conversion_validity`](crate::model::conversion_validity).
 
-use super::chart::{
-    Area, Axis, Caption, Drawn, Key, Line, NotDrawn, draw_lines, figure as whole, looks, not_drawn, panel,
-};
+use super::chart::{Area, Axis, Caption, Drawn, Key, Line, NotDrawn, draw_lines, figure as whole, looks, panel};
 use super::palette::{INK, MEASURED, SHADE};
 use super::wrapped;
 use crate::model::Conversion;
@@ -290,7 +288,7 @@ fn draw_panel(area: &Area, row: &Row, degrees: f64) -> Drawn {
     let band = [(0.0, row.right - row.within), (LAST, row.right + row.within)];
     chart
         .draw_series([Rectangle::new(band, SHADE.filled())])
-        .map_err(not_drawn)?;
+        .map_err(NotDrawn::because)?;
     let mut marks = vec![(RULE, INK, 7)];
     if degrees < BEARING_DEVIATIONS[1] {
         let of_radar = |degrees| nonlinearity(&RANGE, &RANGE_DEVIATION, &variance_of(degrees));
@@ -299,7 +297,7 @@ fn draw_panel(area: &Area, row: &Row, degrees: f64) -> Drawn {
     for (rho, colour, dash) in marks {
         let ends = [(rho, row.lowest), (rho, row.highest)];
         let dashed = DashedLineSeries::new(ends, dash, dash, colour.stroke_width(2));
-        chart.draw_series(dashed).map_err(not_drawn)?;
+        chart.draw_series(dashed).map_err(NotDrawn::because)?;
     }
     // From three σ_r on: nearer, the range itself may be measured as negative.
     let first = 3.0 * variance_of(degrees);

@@ -5,7 +5,7 @@
 
 use super::chart::{
     ABOVE, Area, Axis, BELOW, Caption, Drawn, Key, LEFT, Line, Look, NotDrawn, RIGHT, WIDTH, draw_dots, draw_lines,
-    draw_path, figure, label, looks, marker, not_drawn, panel, range_of, stretches,
+    draw_path, figure, label, looks, marker, panel, range_of, stretches,
 };
 use super::figure::{legend, stem, title, turning, what_is_shaded};
 use super::palette::{INK, MEASURED, SHADE};
@@ -131,11 +131,11 @@ fn draw_plane(area: &Area, first_run: &FirstRun, [x, y]: [Range<f64>; 2], turnin
         let mark = EmptyElement::at((start[0], start[1]))
             + Circle::new((0, 0), 7, INK.stroke_width(2))
             + Text::new("start", (10, 16), label(HPos::Left, VPos::Center));
-        chart.draw_series([mark]).map_err(not_drawn)?;
+        chart.draw_series([mark]).map_err(NotDrawn::because)?;
     }
     if let Some(sensor) = first_run.sensor {
         let mark = EmptyElement::at((sensor[0], sensor[1])) + Polygon::new(marker(SENSOR, 8), INK.filled());
-        chart.draw_series([mark]).map_err(not_drawn)?;
+        chart.draw_series([mark]).map_err(NotDrawn::because)?;
     }
     Ok(())
 }

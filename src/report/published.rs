@@ -3,9 +3,7 @@
 //! After this file the reader sees at a glance which published figures the papers' own equations give, and which not: the computed one is
 //! a dot with a bar of two standard errors to either side, the published one a diamond.
 
-use super::chart::{
-    Area, Axis, Caption, Drawn, Key, NotDrawn, draw_path, figure, label, marker, not_drawn, panel, range_of,
-};
+use super::chart::{Area, Axis, Caption, Drawn, Key, NotDrawn, draw_path, figure, label, marker, panel, range_of};
 use super::palette::{FILTERS, MEASURED};
 use super::reproduction::Comparison;
 use crate::paper::Paper;
@@ -110,17 +108,17 @@ fn draw_row(area: &Area, row: &[Comparison]) -> Drawn {
         let y = -(number as f64);
         let words =
             EmptyElement::at((start, y)) + Text::new(of.filter.clone(), (-10, 0), label(HPos::Right, VPos::Center));
-        chart.draw_series([words]).map_err(not_drawn)?;
+        chart.draw_series([words]).map_err(NotDrawn::because)?;
         draw_path(&mut chart, vec![(of.computed, y), (of.published, y)], MEASURED, 1)?;
         let [from, to] = bar(of);
         draw_path(&mut chart, vec![(from, y), (to, y)], COMPUTED, 3)?;
         for end in [from, to] {
             let cap = EmptyElement::at((end, y)) + PathElement::new(vec![(0, -7), (0, 7)], COMPUTED.stroke_width(2));
-            chart.draw_series([cap]).map_err(not_drawn)?;
+            chart.draw_series([cap]).map_err(NotDrawn::because)?;
         }
         for (value, shape, colour) in [(of.computed, 0, COMPUTED), (of.published, DIAMOND, PUBLISHED)] {
             let mark = EmptyElement::at((value, y)) + Polygon::new(marker(shape, 6), colour.filled());
-            chart.draw_series([mark]).map_err(not_drawn)?;
+            chart.draw_series([mark]).map_err(NotDrawn::because)?;
         }
     }
     Ok(())

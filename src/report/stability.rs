@@ -117,7 +117,11 @@ pub fn text(about: &str, answer: &Answer) -> String {
          noise, and the output, a convex combination of bounded estimates, is bounded: here the paper's sentence is right.",
         "  ",
     ));
-    let _ = writeln!(text, "\nMIXED     {}", headline(&answer.verdict));
+    let certified = match answer.verdict {
+        Verdict::Undecided { .. } => "",
+        _ => "certified ",
+    };
+    let _ = writeln!(text, "\nMIXED     {certified}{}", verdict_word(&answer.verdict));
     text.push_str(&wrapped(&proof(&answer.verdict), "  "));
     text.push_str(&matrices(&answer.verdict));
     text.push_str("\nFROZEN    not certified, searched\n");
@@ -138,14 +142,6 @@ fn short(number: &str) -> String {
     figure(value)
 }
 
-fn headline(verdict: &Verdict) -> &'static str {
-    match verdict {
-        Verdict::Stable(_) => "certified stable",
-        Verdict::Unstable(_) => "certified unstable",
-        Verdict::Undecided { .. } => "undecided",
-    }
-}
-
 /// What the proof says, in words.
 fn proof(verdict: &Verdict) -> String {
     match verdict {
@@ -155,10 +151,13 @@ fn proof(verdict: &Verdict) -> String {
             .to_owned(),
         Verdict::Stable(found) => format!(
             "However the two filters' estimates are mixed, errors shrink: no single quadratic form was found, but {} that remember the last \
-             {} letters, P(w) − AᵀP(w′)A being positive definite for every word w and letter, w′ being w without its first letter and with \
+             {}, P(w) − AᵀP(w′)A being positive definite for every word w and letter, w′ being w without its first letter and with \
              the new one. Checked:",
             found.forms.len(),
-            found.forms.len().ilog2(),
+            match found.forms.len().ilog2() {
+                1 => "letter".to_owned(),
+                letters => format!("{letters} letters"),
+            },
         ),
         Verdict::Unstable(found) => format!(
             "Mode probabilities exist under which errors grow without bound, although each filter by itself is stable: the product {} \
@@ -247,7 +246,7 @@ pub fn map_text(map: &Map) -> String {
     if let Some(row) = map.points.first() {
         let ends =
             [row.first(), row.last()].map(|point| figure(point.map_or(f64::NAN, |point| point.indices[1].to_f64())));
-        let width = row.len().saturating_sub(ends[0].len());
+        let width = row.len().saturating_sub(ends[0].len()).max(ends[1].len() + 2);
         let _ = writeln!(text, "  {:>9}  {}{:>width$}", "Λ_v  Λ_a", ends[0], ends[1]);
     }
     let [stable, unstable, undecided] = map.counts();

@@ -1,0 +1,651 @@
+//! Goal: whoever changes the program sees what the change does to the words and tables that people read, and to the JSON beside them.
+//!
+//! Method: snapshots of what is printed, from values that stand here and are small enough to be followed by eye; no filter is run. Kind of
+//! evidence: the weakest there is. A snapshot says what is printed, and a person reads whether it is right.
+
+use immaculate::imm::Quantity::{self, CombinedMean, Gain, LogLikelihood, MixedCovariance, ModeProbabilities};
+use immaculate::number::Rational;
+use immaculate::oracle::case::{self, BadCase};
+use immaculate::oracle::certify::Certified;
+use immaculate::oracle::check::{CaseReport, Outcome, Report};
+use immaculate::oracle::diagnose::Diagnosis;
+use immaculate::oracle::invalid::{Class, Invalid};
+use immaculate::oracle::judge::{Finding, Judged, Judgement, OwnError};
+use immaculate::oracle::problem::FilterFile;
+use immaculate::oracle::subject::{Broken, Precision, Ready};
+use immaculate::oracle::trace::{Dimensions, Trace};
+use immaculate::oracle::variant::{self, Variant};
+use immaculate::paper::Paper;
+use immaculate::paper::result::{
+    Consistency, Delay, Difference, ErrorFigure, ErrorHistory, FailedRun, FirstRun, FitDifference, Performance,
+    Quantity as Measured, Reproduction,
+};
+use immaculate::paper::specification::Choices;
+use immaculate::paper::sustika2015::divergence::Row;
+use immaculate::paper::sustika2015::sweep::{Fit, Parameter, Point, Setting, Trajectory};
+use immaculate::paper::verdict::{Judgement as Claim, Verdict as Answer};
+use immaculate::report;
+use immaculate::rule::RuleName;
+use immaculate::rule::unscented::Parameters;
+use immaculate::statistics::Estimate;
+use immaculate::steady::map::Map;
+use immaculate::steady::verdict::{Depth, Filters, Verdict};
+use std::fmt::Write;
+use std::time::Duration;
+
+// The verdict on a program under test
+
+#[test]
+fn a_verdict_with_every_outcome_and_every_finding() {
+    let report = of_every_outcome();
+    insta::assert_snapshot!("verdict", report::check::text(&report));
+    insta::assert_snapshot!("verdict_json", pretty(&report::check_json::json(&report)));
+}
+
+#[test]
+fn a_verdict_in_which_all_is_right() {
+    let mut text = String::new();
+    for (echo, cases) in [
+        (Some(true), vec![right("short", 15.65), right("long", 9.25)]),
+        (None, vec![case("drowned", Outcome::CannotTell)]),
+        (Some(false), vec![right("short", 15.65)]),
+    ] {
+        let report = Report {
+            echo,
+            cases,
+            diagnosis: Diagnosis::Nothing,
+            hidden: Vec::new(),
+            not_asked: 0,
+            remarks: Vec::new(),
+            ..of_every_outcome()
+        };
+        text.push_str(&report::check::text(&report));
+        text.push('\n');
+    }
+    insta::assert_snapshot!("verdict_right", text);
+}
+
+#[test]
+fn every_kind_of_diagnosis() {
+    let [mistake, second, third] = [
+        "mixed-spread-omitted",
+        "transition-transposed",
+        "mixed-spread-inner-product",
+    ]
+    .map(found);
+    let convention = of_kind(variant::Kind::Convention);
+    let form = of_kind(variant::Kind::Form);
+    let mut text = String::new();
+    for diagnosis in [
+        Diagnosis::One(vec![mistake]),
+        Diagnosis::One(vec![mistake, second]),
+        Diagnosis::One(vec![convention]),
+        Diagnosis::Several(vec![vec![mistake], vec![second, third]]),
+        Diagnosis::Several(vec![vec![form], vec![convention]]),
+        Diagnosis::Pairs(vec![[mistake, second]]),
+        Diagnosis::Pairs(vec![[mistake, second], [mistake, third]]),
+        Diagnosis::ByFilter(vec![
+            ("kalman".into(), Diagnosis::One(vec![mistake])),
+            ("cubature".into(), Diagnosis::Nothing),
+        ]),
+        Diagnosis::Unknown {
+            best: vec![mistake],
+            unexplained: (1..=6).map(|number| format!("case-{number}")).collect(),
+            of: 8,
+        },
+        Diagnosis::Unknown {
+            best: vec![mistake],
+            unexplained: Vec::new(),
+            of: 2,
+        },
+        Diagnosis::Unknown {
+            best: Vec::new(),
+            unexplained: vec!["case-1".into()],
+            of: 1,
+        },
+    ] {
+        let report = Report {
+            cases: vec![wrong("a", vec![fault(MixedCovariance, 0)])],
+            diagnosis,
+            ..of_every_outcome()
+        };
+        let json = report::check_json::json(&report);
+        let _ = write!(text, "{}\n{}\n\n", report::check::text(&report), json["diagnosis"]);
+    }
+    insta::assert_snapshot!("diagnoses", text);
+}
+
+/// A report in which every outcome and every finding occurs once at least.
+fn of_every_outcome() -> Report {
+    let own = |size: f64, ratio: f64, shown: f64| OwnError {
+        index: 5,
+        shown,
+        expected: 5.540_625,
+        ratio,
+        size,
+    };
+    let value = |quantity, finding, own| Judged {
+        place: (2, quantity, 0),
+        finding,
+        error: 0.25,
+        own,
+        hidden: Vec::new(),
+    };
+    let mut stopped = wrong(
+        "stopped-early",
+        vec![
+            fault(MixedCovariance, 1),
+            Judged {
+                hidden: vec![Gain],
+                ..value(CombinedMean, Finding::Fault, Some(own(3.0, f64::INFINITY, 1e12)))
+            },
+            value(LogLikelihood, Finding::Fault, Some(own(1e-9, 2e6, 0.0))),
+            value(Gain, Finding::NotFinite, Some(own(f64::NAN, f64::NAN, f64::NAN))),
+            value(ModeProbabilities, Finding::NotFinite, None),
+            value(ModeProbabilities, Finding::Propagated, None),
+            value(ModeProbabilities, Finding::CannotTell, None),
+            value(ModeProbabilities, Finding::Undetermined, None),
+            value(ModeProbabilities, Finding::Stale, None),
+            value(ModeProbabilities, Finding::Right, None),
+        ],
+    );
+    stopped.stopped = Some("LinAlgError: Singular matrix\n  in update".into());
+    let reason = || "not mine".to_owned();
+    let invalid = Invalid::new(Class::Shape, "steps[0].gain", "has 3 numbers, and 4 are expected");
+    let cases = vec![
+        right("right", 14.4),
+        wrong("wrong", vec![fault(MixedCovariance, 0), fault(MixedCovariance, 1)]),
+        wrong("wrong-too", vec![fault(MixedCovariance, 0)]),
+        wrong("wrong-again", vec![fault(MixedCovariance, 0)]),
+        stopped,
+        case("cannot-tell", Outcome::CannotTell),
+        case("rejected", Outcome::Rejected { other_class: None }),
+        case(
+            "rejected-otherwise",
+            Outcome::Rejected {
+                other_class: Some("shape".into()),
+            },
+        ),
+        case("not-rejected", Outcome::NotRejected),
+        case("wrongly-rejected", Outcome::WronglyRejected { reason: reason() }),
+        case("skipped", Outcome::Skipped { reason: reason() }),
+        case("nothing-shown", Outcome::NothingShown),
+        case("stopped", Outcome::Stopped { reason: reason() }),
+        case("unreadable", Outcome::Broken(Broken::Invalid(invalid))),
+        case(
+            "silent",
+            Outcome::Broken(Broken::TimedOut {
+                seconds: 10,
+                hint: String::new(),
+            }),
+        ),
+    ];
+    Report {
+        ready: Ready {
+            name: "a program".into(),
+            precision: Precision::Double,
+            ..Ready::default()
+        },
+        echo: Some(true),
+        cases,
+        not_asked: 3,
+        diagnosis: Diagnosis::One(vec![found("mixed-spread-omitted")]),
+        hidden: vec![Gain, LogLikelihood],
+        remarks: vec!["the program wrote to standard output what is no message".into()],
+    }
+}
+
+fn case(id: &str, outcome: Outcome) -> CaseReport {
+    CaseReport {
+        id: id.into(),
+        filter: FilterFile::Kalman {},
+        dimensions: Dimensions {
+            n: 4,
+            m: 2,
+            r: 2,
+            steps: 2,
+        },
+        outcome,
+        judgement: None,
+        judged: 0,
+        of: 0,
+        digits: None,
+        stopped: None,
+    }
+}
+
+fn right(id: &str, digits: f64) -> CaseReport {
+    CaseReport {
+        judged: 30,
+        of: 32,
+        digits: Some(digits),
+        ..case(id, Outcome::Right)
+    }
+}
+
+fn wrong(id: &str, values: Vec<Judged>) -> CaseReport {
+    CaseReport {
+        judged: values.len(),
+        of: 64,
+        judgement: Some(Judgement {
+            values,
+            failures: vec![format!(
+                "step 2 of {id}: the predicted covariance is not positive definite"
+            )],
+        }),
+        ..case(id, Outcome::Wrong)
+    }
+}
+
+/// A fault in the sixth number of a quantity.
+fn fault(quantity: Quantity, mode: usize) -> Judged {
+    Judged {
+        place: (1, quantity, mode),
+        finding: Finding::Fault,
+        error: 0.137,
+        own: Some(OwnError {
+            index: 5,
+            shown: 4.781_25,
+            expected: 5.540_625,
+            ratio: 2e14,
+            size: 0.137,
+        }),
+        hidden: Vec::new(),
+    }
+}
+
+fn found(id: &str) -> &'static Variant {
+    variant::find(id).expect("it is in the catalogue")
+}
+
+fn of_kind(kind: variant::Kind) -> &'static Variant {
+    variant::catalogue()
+        .iter()
+        .find(|variant| variant.kind == kind)
+        .expect("every kind has one")
+}
+
+// Published cases, and the catalogue
+
+#[test]
+fn cases_that_were_verified() {
+    let cases = case::all().unwrap();
+    let of = |id: &str| cases.iter().find(|case| case.problem.id == id).unwrap();
+    let (two, three) = (of("step.n4-m2.two-modes"), of("step.n4-m2.three-modes"));
+    let mut trace = Trace::empty(two.problem.dimensions());
+    trace.set(1, ModeProbabilities, 0, vec![0.25, 0.75]);
+    trace.set(1, CombinedMean, 0, vec![1.0, 2.0, 3.0, 4.0]);
+    let (scale, noise) = (trace.clone(), trace.clone());
+    let certified = Certified {
+        trace,
+        scale,
+        noise,
+        bits: 128,
+        digits: 30,
+    };
+    let outcomes = [
+        (&two, Ok(Some(certified)), Duration::from_millis(250)),
+        (&three, Ok(None), Duration::ZERO),
+        (&three, Err(BadCase::Missing("a file".into())), Duration::ZERO),
+    ];
+    let text = format!(
+        "{}\n{}",
+        report::cases::verified(&outcomes),
+        pretty(&report::cases::verified_json(&outcomes))
+    );
+    insta::assert_snapshot!("cases_verified", text);
+    insta::assert_snapshot!("cases_listed", report::cases::list(&[two, three]));
+}
+
+#[test]
+fn a_trace_step_by_step() {
+    let cases = case::all().unwrap();
+    let problem = &cases
+        .iter()
+        .find(|case| case.problem.id == "step.n4-m2.two-modes")
+        .unwrap()
+        .problem;
+    let Dimensions { n, m, r, .. } = problem.dimensions();
+    // Every value is the number of its place.
+    let mut values = Trace::empty(problem.dimensions());
+    for (step, quantity, mode) in values.clone().all_places() {
+        let (rows, columns) = quantity.shape(n, m, r);
+        let numbers = (0..rows * columns).map(|index| (10 * index + mode) as f64).collect();
+        values.set(step, quantity, mode, numbers);
+    }
+    let words = values.map(|_, numbers| numbers.iter().map(ToString::to_string).collect());
+    insta::assert_snapshot!("trace", report::trace::text(problem, &words));
+}
+
+#[test]
+fn variants_in_a_table_and_in_full() {
+    let some = ["mixed-spread-omitted", "transition-transposed"].map(|id| found(id).clone());
+    let mut text = report::variants::table_of(&some);
+    for variant in &some {
+        let _ = write!(
+            text,
+            "\n{}{}",
+            report::variants::in_full(variant),
+            pretty(&report::variants::json(variant))
+        );
+    }
+    insta::assert_snapshot!("variants", text);
+}
+
+// The papers' figures
+
+#[test]
+fn reproductions_of_each_paper() {
+    let mut text = String::new();
+    for paper in Paper::ALL {
+        let of_paper = reproduction(paper, Choices::default());
+        text.push_str(&report::reproduction::text(paper, &of_paper));
+        let mut other = reproduction(paper, Choices::of("some-parameter", "otherwise"));
+        other.filters[0].failures = failures(2);
+        text.push_str(&report::reproduction::alternatives(paper, &[of_paper, other]));
+        text.push('\n');
+    }
+    // A scenario of which nothing is published.
+    let acceleration = reproduction(Paper::Derbez2000, Choices::of("scenario", "acceleration"));
+    text.push_str(&report::reproduction::text(Paper::Derbez2000, &acceleration));
+    insta::assert_snapshot!("reproductions", text);
+}
+
+#[test]
+fn reproductions_as_csv() {
+    let of_paper = reproduction(Paper::Liu2017, Choices::default());
+    let first_run = of_paper.first_run.as_ref().unwrap();
+    let parts = [
+        report::reproduction::errors_csv(&of_paper),
+        report::reproduction::mode_probabilities_csv(&of_paper),
+        report::reproduction::path_csv(&of_paper, first_run),
+    ];
+    insta::assert_snapshot!("reproduction_csv", parts.join("\n"));
+}
+
+#[test]
+fn the_open_choices_of_each_paper() {
+    let of_papers = Paper::ALL.map(|paper| report::reproduction::choices(paper.specification()));
+    insta::assert_snapshot!("choices", of_papers.concat());
+}
+
+#[test]
+fn claims_with_every_verdict() {
+    let verdicts = [
+        Answer::Proven,
+        Answer::Confirmed,
+        Answer::Refuted,
+        Answer::Undecided,
+        Answer::NotReproducible,
+        Answer::Refuted,
+    ];
+    let claims = verdicts.map(|verdict| Claim {
+        id: format!("a-{}-claim", verdict.words().replace(' ', "-")),
+        quote: "the proposed algorithm is better".into(),
+        place: "section 4".into(),
+        question: "Is it?".into(),
+        verdict,
+        evidence: "Some figures, and what they are compared with: a sentence that is long enough to be broken once at the width of a page."
+            .into(),
+    });
+    let parts = [
+        report::claims::heading(Paper::Zhu2016.specification()),
+        report::claims::text(&claims),
+        report::claims::summary(&claims),
+    ];
+    insta::assert_snapshot!("claims", parts.concat());
+}
+
+#[test]
+fn the_sweep_and_what_makes_a_filter_diverge() {
+    let estimate = |value| Estimate {
+        value,
+        standard_error: 0.05,
+    };
+    let point = |value: f64| Point {
+        runs_with_jump: 4,
+        fits: [0, 1, 2].map(|filter| Fit {
+            mean: estimate(value + filter as f64),
+            median: value,
+            divergent: 2 * filter,
+            divergent_with_jump: filter,
+            failed: usize::from(filter == 2),
+        }),
+        unscented_less_converted: estimate(-0.25),
+        plain_less_converted: estimate(7.5),
+    };
+    let mut sweep = Vec::new();
+    for trajectory in Trajectory::ALL {
+        for parameter in Parameter::ALL {
+            let values = (1..=20).map(|k| f64::from(k) / 10.0);
+            sweep.extend(values.map(|value| {
+                (
+                    Setting {
+                        trajectory,
+                        parameter,
+                        value,
+                    },
+                    point(value),
+                )
+            }));
+        }
+    }
+    let rows = [
+        Row {
+            scenario: "matched-manoeuvring",
+            window: "toolbox",
+            point: point(1.0),
+        },
+        Row {
+            scenario: "mismatched-manoeuvring",
+            window: "printed",
+            point: point(2.0),
+        },
+    ];
+    let text = format!(
+        "{}\n{}",
+        report::fit_error::text(&sweep, 50),
+        report::divergence::text(&rows, 50)
+    );
+    insta::assert_snapshot!("sweep", text);
+}
+
+/// Figures that can be told apart, for as many filters as the paper's first table has columns; two steps.
+fn reproduction(paper: Paper, choices: Choices) -> Reproduction {
+    let names = &paper.specification().tables[0].columns;
+    let filters: Vec<Performance> = names
+        .iter()
+        .enumerate()
+        .map(|(number, name)| performance(paper, name, number))
+        .collect();
+    let difference = |quantity, value| Difference {
+        filter: names[0].clone(),
+        minus: names[1].clone(),
+        quantity,
+        estimate: Estimate {
+            value,
+            standard_error: 0.125,
+        },
+    };
+    let fit_difference = FitDifference {
+        filter: names[0].clone(),
+        minus: names[1].clone(),
+        estimate: Estimate {
+            value: -0.5,
+            standard_error: 0.125,
+        },
+    };
+    Reproduction {
+        paper: paper.key(),
+        choices,
+        runs: 20,
+        steps: 2,
+        times: vec![1.5, 3.0],
+        seed: 7,
+        motions: vec!["constant velocity", "right turn"],
+        first_run: Some(FirstRun {
+            truth: vec![[0.0, 0.0], [100.0, 50.0]],
+            measured: vec![[1.0, -1.0], [98.0, 52.0]],
+            estimates: names.iter().map(|_| vec![[0.5, 0.25], [101.0, 49.0]]).collect(),
+            sensor: None,
+        }),
+        filters,
+        // Above what rounding leaves, and below it.
+        differences: vec![
+            difference(Measured::Position, 1.5),
+            difference(Measured::Velocity, 1e-13),
+        ],
+        fit_differences: Vec::from_iter((paper == Paper::Sustika2015).then_some(fit_difference)),
+    }
+}
+
+fn performance(paper: Paper, name: &str, number: usize) -> Performance {
+    let value = 10.0 * (number + 1) as f64;
+    let estimate = |value| Estimate {
+        value,
+        standard_error: 0.25,
+    };
+    let history = |quantity, value| ErrorHistory {
+        quantity,
+        values: vec![value, 2.0 * value],
+        standard_errors: vec![0.5, 0.25],
+    };
+    let consistency = |value, expected| Consistency {
+        mean: estimate(value),
+        expected,
+        bounds: (3.0, 5.0),
+        inside: 0.95,
+    };
+    let is_first = number == 0;
+    Performance {
+        name: name.into(),
+        modes: vec!["constant velocity".into(), "right turn".into()],
+        points: (!is_first).then_some(8 + number),
+        effective_points: (!is_first).then_some(7 + number),
+        completed_runs: 20,
+        failures: failures(if is_first { 5 } else { 0 }),
+        errors: Measured::ALL
+            .iter()
+            .map(|quantity| ErrorFigure {
+                quantity: *quantity,
+                estimate: estimate(value),
+            })
+            .collect(),
+        fit_error: (paper == Paper::Sustika2015).then(|| estimate(1.5 + number as f64)),
+        rmse: vec![
+            history(Measured::Position, value),
+            history(Measured::Velocity, value / 4.0),
+        ],
+        mode_probabilities: vec![vec![0.75, 0.25], vec![0.125, 0.875]],
+        mode_probability_standard_errors: vec![vec![0.01, 0.02], vec![0.03, 0.04]],
+        nees: consistency(if number == 1 { f64::NAN } else { 4.5 }, 4.0),
+        nis: consistency(2.125, 2.0),
+        delays: vec![
+            Delay {
+                time: 3.0,
+                detected: 20,
+                mean: 2.5,
+                greatest: 6.0,
+            },
+            Delay {
+                time: 9.0,
+                detected: 17,
+                mean: 4.0,
+                greatest: 8.0,
+            },
+        ],
+        microseconds_per_step: 1.25 * (number + 1) as f64,
+    }
+}
+
+fn failures(count: usize) -> Vec<FailedRun> {
+    let failed = |run| FailedRun {
+        run,
+        failure: "step 2, mode `right turn`: the mixed covariance is not positive definite".into(),
+    };
+    (1..=count).map(failed).collect()
+}
+
+// Rules, and fixed gains
+
+#[test]
+fn rules_with_and_without_a_degree() {
+    let mut text = String::new();
+    let mut describe = |rule: &RuleName, shown: &str, n: usize| {
+        let description = report::rule::describe(rule, shown, n).unwrap();
+        let lines = report::rule::text(&description);
+        // The first points say how all are printed.
+        let few: Vec<&str> = lines.lines().take(16).collect();
+        let _ = writeln!(text, "{}\n", few.join("\n"));
+    };
+    // As printed, a rule has no degree; covariances may have weights of their own; of a product the nodes are shown; and above dimension
+    // ten nothing is tried.
+    for (name, n) in [
+        ("simplex-5", 2),
+        ("simplex-5-printed-16", 2),
+        ("unscented", 2),
+        ("gauss-hermite-3", 2),
+        ("gauss-hermite-4", 1),
+        ("cubature-3", 11),
+    ] {
+        describe(&name.parse().unwrap(), name, n);
+    }
+    let [alpha, beta, kappa] = [Rational::new(1, 2), Rational::new(2, 1), Rational::new(0, 1)];
+    describe(
+        &RuleName::Unscented(Some(Parameters { alpha, beta, kappa })),
+        "unscented, α = 1/2, β = 2, κ = 0",
+        2,
+    );
+    insta::assert_snapshot!("rules", text);
+}
+#[test]
+fn pairs_of_fixed_gain_filters_that_are_stable_unstable_and_undecided() {
+    let mut text = String::new();
+    let q = Rational::new;
+    let (equal, apart) = ([q(1, 2), q(1, 2)], [q(4, 5), q(46, 125)]);
+    // One form; forms that remember; none of those that may be tried; a product that grows.
+    for (roots, memory) in [(equal, 0), (apart.clone(), 2), (apart, 0), ([q(3, 4), q(1, 6)], 0)] {
+        let depth = Depth {
+            word: 3,
+            run: 2,
+            memory,
+        };
+        let filters = Filters::Roots(roots);
+        let verdict = filters.decide(depth);
+        let answer = report::stability::Answer::new(&filters, verdict);
+        text.push_str(&report::stability::text("Two filters.", &answer));
+        let _ = write!(
+            text,
+            "{}\n\n",
+            pretty(&report::stability::json("Two filters.", &answer, None))
+        );
+    }
+    insta::assert_snapshot!("stability", text);
+}
+
+#[test]
+fn the_map_of_stability_as_text_and_data() {
+    let depth = Depth {
+        word: 6,
+        run: 6,
+        memory: 2,
+    };
+    let map = Map::new(5, [-2.0, 2.0], depth, &|| ());
+    let counted = map
+        .points
+        .iter()
+        .flatten()
+        .filter(|point| matches!(point.verdict, Verdict::Stable(_)))
+        .count();
+    assert_eq!(counted, map.counts()[0]);
+    let parts = [
+        report::stability::map_text(&map),
+        report::stability::map_csv(&map),
+        pretty(&report::stability::map_json(&map)),
+    ];
+    insta::assert_snapshot!("stability_map", parts.join("\n"));
+}
+
+fn pretty(value: &serde_json::Value) -> String {
+    serde_json::to_string_pretty(value).unwrap()
+}
