@@ -335,7 +335,8 @@ fn files(folder: &str, wanted: &dyn Fn(&Path) -> bool) -> Vec<File> {
         };
         for path in entries.map(|entry| entry.unwrap().path()) {
             if path.is_dir() {
-                folders.push(path);
+                // What a build leaves beside its sources is not of the tree.
+                folders.extend(Some(path).filter(|path| path.file_name().is_none_or(|name| name != "target")));
             } else if wanted(&path) {
                 paths.push(path);
             }
