@@ -29,8 +29,10 @@ pub fn math(latex: &str) -> Result<Markup, String> {
     let mut text = String::new();
     let events = events.into_iter().map(Ok::<_, Box<ParserError>>);
     push_mathml(&mut text, events, config).map_err(|error| error.to_string())?;
-    // The renderer writes the sign as it stands.
-    Ok(PreEscaped(text.replace("<mo><</mo>", "<mo>&lt;</mo>")))
+    // The renderer writes the sign as it stands, and of a blank the name.
+    let text = text.replace("<mo><</mo>", "<mo>&lt;</mo>");
+    let text = text.replace("<mtext>&amp;nbsp;</mtext>", "<mspace width=\"0.33em\" />");
+    Ok(PreEscaped(text))
 }
 
 /// A formula as MathML; one that cannot be read as it is written, which a test excludes.
