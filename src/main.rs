@@ -65,7 +65,11 @@ fn main() -> ExitCode {
     }
 }
 
-/// Does what the arguments ask for; a refusal has the sentence and, by its kind, the exit status.
+/// Does what the arguments ask for.
+///
+/// # Errors
+///
+/// [`Refusal`] with the sentence and, by its kind, the exit status.
 pub fn run(cli: &Cli) -> Result<Done, Refusal> {
     match &cli.command {
         Command::Reproduce(arguments) => cli::reproduce::run(arguments),

@@ -4,9 +4,14 @@
 //! against the value that it is of, which is taken from the runs or computed anew. Kind of evidence: exact, to two pixels: a label
 //! stands at a whole pixel, and so does a point.
 
+#![allow(
+    clippy::float_cmp,
+    reason = "widths are whole, and opacities are those that were chosen"
+)]
+
 mod common;
 
-use common::svg::{Frame, Shape, frames, shapes};
+use common::svg::{Frame, Shape, frames, rectangle_at, shapes};
 use immaculate::model::Conversion;
 use immaculate::model::conversion_moments::attenuation;
 use immaculate::model::conversion_validity::{Validity, validity};
@@ -256,11 +261,14 @@ fn scaled(point: &Point, factor: f64) -> Point {
     }
 }
 
+type Value = fn(&Validity<f64>) -> f64;
+
 #[test]
 fn the_conversions_are_drawn_as_their_closed_forms_have_them() {
     let drawn = shapes(&conversion::figure().unwrap());
     let panels = frames(&drawn);
-    let rows: [(fn(&Validity<f64>) -> f64, f64, f64); 4] = [
+    // What is drawn, what would be right, and within what.
+    let rows: [(Value, f64, f64); 4] = [
         (|found| found.bias, 0.0, 0.2),
         (|found| found.as_measured[0], 1.0, 0.1),
         (|found| found.as_true[0], 1.0, 0.1),
@@ -365,7 +373,7 @@ fn a_cell_of_the_stability_map_has_the_colour_of_its_verdict() {
                 Verdict::Unstable(_) => (colour(1), 0.25),
                 Verdict::Undecided { .. } => ("#000000", 1.0),
             };
-            let cell = panels[0].rectangle_at(&drawn, (x.pixel(a), y.pixel(v))).unwrap();
+            let cell = rectangle_at(&drawn, (x.pixel(a), y.pixel(v))).unwrap();
             assert_eq!(
                 (cell.colour.as_str(), cell.opacity),
                 (fill, opacity),
@@ -415,7 +423,7 @@ fn a_cell_of_a_heat_map_has_the_colour_of_its_percentage() {
                 frame.x.pixel(grid.columns[index % 4]),
                 frame.y.pixel(grid.rows[index / 4]),
             );
-            let cell = frame.rectangle_at(&drawn, at);
+            let cell = rectangle_at(&drawn, at);
             let (fill, opacity) = match percentage {
                 p if p.is_nan() => (hexadecimal(MEASURED), 1.0),
                 // White is right, and needs no ink.

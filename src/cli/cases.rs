@@ -3,17 +3,17 @@
 //! After this file the reader knows how cases are listed, copied and proven again, and that only `cases write` writes them and never
 //! changes one.
 
+use super::progress::bar;
+use super::select::Select;
 use super::{Done, Refusal, json_text, make_directory, read_file, write_file};
 use clap::{Args, Subcommand, ValueEnum};
-use immaculate::oracle::case::{self, Case, Expected, LOCK, Lock, Locked};
+use immaculate::oracle::case::{self, Expected, LOCK, Lock, Locked};
 use immaculate::oracle::certify::{certify, long_csv};
-use immaculate::oracle::check::Selection;
 use immaculate::oracle::problem::ProblemFile;
 use immaculate::oracle::published;
 use immaculate::oracle::schema;
 use immaculate::oracle::trace::Dimensions;
 use immaculate::report;
-use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -27,7 +27,13 @@ pub struct Cases {
 #[derive(Subcommand)]
 enum Action {
     /// List the cases with what each is for
-    List(Select),
+    List {
+        #[command(flatten)]
+        select: Select,
+        /// Print JSON instead of text
+        #[arg(long)]
+        json: bool,
+    },
     /// Print a case: its problem and its certified trace
     Show {
         /// The id
@@ -44,7 +50,13 @@ enum Action {
         select: Select,
     },
     /// Prove every number of the cases again, from nothing but the problems
-    Verify(Select),
+    Verify {
+        #[command(flatten)]
+        select: Select,
+        /// Print JSON instead of text
+        #[arg(long)]
+        json: bool,
+    },
     /// Print the JSON Schema of problem or trace files
     Schema {
         /// Which
@@ -66,55 +78,21 @@ enum Format {
     Trace,
 }
 
-#[derive(Args)]
-struct Select {
-    /// Only cases whose id begins with this; may be given again
-    #[arg(long = "case", value_name = "ID")]
-    cases: Vec<String>,
-    /// Only cases with this flag; may be given again
-    #[arg(long = "flag", value_name = "FLAG")]
-    flags: Vec<String>,
-    /// Only cases of this filter: kalman, unscented, a rule, fixed-gain or fixed-gain-unmixed; may be given again
-    #[arg(long = "kind", value_name = "KIND")]
-    kinds: Vec<String>,
-    /// Print JSON instead of text
-    #[arg(long)]
-    json: bool,
-}
-
-impl Select {
-    fn cases(&self) -> Result<Vec<&'static Case>, Refusal> {
-        let selection = Selection {
-            ids: self.cases.clone(),
-            flags: self.flags.clone(),
-            kinds: self.kinds.clone(),
-        };
-        let all = case::all().map_err(Refusal::request)?;
-        let selected: Vec<&Case> = all.iter().filter(|case| selection.has(case)).collect();
-        if selected.is_empty() {
-            return Err(Refusal::request(
-                "no case has what was selected; `immaculate cases list` lists all",
-            ));
-        }
-        Ok(selected)
-    }
-}
-
 pub fn run(arguments: &Cases) -> Result<Done, Refusal> {
     match &arguments.action {
-        Action::List(select) => list(select),
+        Action::List { select, json } => list(select, *json),
         Action::Show { id, json } => show(id, *json),
         Action::Copy { folder, select } => copy(folder, select),
-        Action::Verify(select) => verify(select),
+        Action::Verify { select, json } => verify(select, *json),
         Action::Schema { of: Format::Problem } => Ok(json_text(&schema::of_problems()).into()),
         Action::Schema { of: Format::Trace } => Ok(json_text(&schema::of_traces()).into()),
         Action::Write { folder } => write(folder),
     }
 }
 
-fn list(select: &Select) -> Result<Done, Refusal> {
+fn list(select: &Select, as_json: bool) -> Result<Done, Refusal> {
     let cases = select.cases()?;
-    if select.json {
+    if as_json {
         let values: Vec<_> = cases
             .iter()
             .map(|case| {
@@ -170,16 +148,9 @@ fn copy(folder: &Path, select: &Select) -> Result<Done, Refusal> {
     Ok(text.into())
 }
 
-fn bar(length: usize, what: &'static str) -> ProgressBar {
-    ProgressBar::new(length as u64).with_message(what).with_style(
-        ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} cases, {elapsed}")
-            .unwrap_or_else(|_| ProgressStyle::default_bar()),
-    )
-}
-
-fn verify(select: &Select) -> Result<Done, Refusal> {
+fn verify(select: &Select, as_json: bool) -> Result<Done, Refusal> {
     let cases = select.cases()?;
-    let bar = bar(cases.len(), "verifying");
+    let bar = bar(cases.len(), "verifying {wide_bar} {pos}/{len} cases, {elapsed}");
     let outcomes: Vec<_> = cases
         .par_iter()
         .map(|case| {
@@ -191,7 +162,7 @@ fn verify(select: &Select) -> Result<Done, Refusal> {
         .collect();
     bar.finish_and_clear();
     let is_wrong = outcomes.iter().any(|(_, outcome, _)| outcome.is_err());
-    let text = if select.json {
+    let text = if as_json {
         json_text(&report::cases::verified_json(&outcomes))
     } else {
         report::cases::verified(&outcomes)
@@ -218,7 +189,7 @@ fn write(folder: &Path) -> Result<Done, Refusal> {
     }
     let is_new = |id: &str| !lock.cases.iter().any(|locked| locked.id == id);
     let new: Vec<&ProblemFile> = problems.iter().filter(|problem| is_new(&problem.id)).collect();
-    let bar = bar(new.len(), "certifying");
+    let bar = bar(new.len(), "certifying {wide_bar} {pos}/{len} cases, {elapsed}");
     let written: Result<Vec<Written>, Refusal> = new
         .par_iter()
         .map(|problem| {

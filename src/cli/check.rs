@@ -2,15 +2,15 @@
 //!
 //! After this file the reader knows what a check can be asked for, and what its exit status means.
 
+use super::progress::bar;
+use super::select::Select;
 use super::{Done, Refusal, json_text};
 use clap::Args;
-use immaculate::oracle::case;
-use immaculate::oracle::check::{Selection, check};
+use immaculate::oracle::check::check;
 use immaculate::oracle::folder::Folder;
 use immaculate::oracle::process::Process;
 use immaculate::oracle::subject::Subject;
 use immaculate::report;
-use indicatif::{ProgressBar, ProgressStyle};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -26,15 +26,8 @@ pub struct Check {
     /// Judge answer files instead of a program: ID.json or ID.csv for each case, in this folder
     #[arg(long, value_name = "DIR", conflicts_with = "command")]
     answers: Option<PathBuf>,
-    /// Only cases whose id begins with this; may be given again
-    #[arg(long = "case", value_name = "ID")]
-    cases: Vec<String>,
-    /// Only cases with this flag; may be given again (`immaculate cases list` knows the flags)
-    #[arg(long = "flag", value_name = "FLAG")]
-    flags: Vec<String>,
-    /// Only cases of this filter: kalman, unscented, a rule, fixed-gain or fixed-gain-unmixed; may be given again
-    #[arg(long = "kind", value_name = "KIND")]
-    kinds: Vec<String>,
+    #[command(flatten)]
+    select: Select,
     /// The time that the program has for each case, in seconds
     #[arg(long, value_name = "SECONDS", default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..=3600))]
     timeout: u64,
@@ -56,25 +49,13 @@ pub fn run(arguments: &Check) -> Result<Done, Refusal> {
             Duration::from_secs(arguments.timeout),
         )),
     };
-    let selection = Selection {
-        ids: arguments.cases.clone(),
-        flags: arguments.flags.clone(),
-        kinds: arguments.kinds.clone(),
-    };
-    let selected = case::all()
-        .map_err(Refusal::request)?
-        .iter()
-        .filter(|case| selection.has(case))
-        .count();
-    let bar = ProgressBar::new(selected as u64).with_style(
-        ProgressStyle::with_template("checking {wide_bar} {pos}/{len} {msg}")
-            .unwrap_or_else(|_| ProgressStyle::default_bar()),
-    );
+    let selected = arguments.select.cases()?.len();
+    let bar = bar(selected, "checking {wide_bar} {pos}/{len} {msg}");
     let progress = |id: &str| {
         bar.set_message(id.to_owned());
         bar.inc(1);
     };
-    let report = check(subject.as_mut(), &selection, &progress).map_err(Refusal::request)?;
+    let report = check(subject.as_mut(), &arguments.select.selection(), &progress).map_err(Refusal::request)?;
     bar.finish_and_clear();
     let text = if arguments.json {
         json_text(&report::check_json::json(&report))

@@ -2,12 +2,12 @@
 //!
 //! After this file the reader knows how the judges are asked, and what is shown while they compute.
 
+use super::progress::bar;
 use super::{Done, MOST_RUNS, Refusal, check_that_memory_does, effort, json_text, papers};
 use clap::Args;
 use immaculate::paper::Paper;
 use immaculate::paper::monte_carlo::Progress;
 use immaculate::report;
-use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 
 #[derive(Args)]
@@ -29,11 +29,7 @@ pub struct Claims {
 pub fn run(arguments: &Claims) -> Result<Done, Refusal> {
     let effort = effort(arguments.runs, arguments.seed);
     check_that_memory_does(&papers(&arguments.papers), effort)?;
-    let bar = ProgressBar::new_spinner().with_message("judging");
-    bar.set_style(
-        ProgressStyle::with_template("{spinner} {msg}: {pos} runs, {elapsed}")
-            .unwrap_or_else(|_| ProgressStyle::default_spinner()),
-    );
+    let bar = bar(0, "{spinner} judging: {pos} runs, {elapsed}");
     let advance: Progress = &|| bar.inc(1);
     let mut text = String::new();
     let mut values = Vec::new();

@@ -8,9 +8,11 @@ pub mod check;
 pub mod choices;
 pub mod claims;
 pub mod equation;
+pub mod progress;
 pub mod report;
 pub mod reproduce;
 pub mod rule;
+pub mod select;
 pub mod stability;
 pub mod sweep;
 pub mod trace;
@@ -18,7 +20,6 @@ pub mod variants;
 
 use immaculate::file;
 use immaculate::paper::{self, Effort, Paper};
-use indicatif::{ProgressBar, ProgressStyle};
 use std::io::Write;
 use std::path::Path;
 
@@ -122,11 +123,4 @@ pub fn check_that_memory_does(papers: &[Paper], effort: Effort) -> Result<(), Re
         }
     }
     Ok(())
-}
-
-/// A progress bar on standard error; it shows itself only where a person is watching.
-pub fn progress_bar(length: u64, what: &'static str) -> ProgressBar {
-    let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} runs, {eta} left")
-        .unwrap_or_else(|_| ProgressStyle::default_bar());
-    ProgressBar::new(length).with_style(style).with_message(what)
 }

@@ -2,12 +2,13 @@
 //!
 //! After this file the reader knows how the page is asked for, and what is shown while it is computed.
 
+use super::progress::style;
 use super::{Done, MOST_RUNS, Refusal, check_that_memory_does, effort, write_file};
 use clap::Args;
 use immaculate::paper::Paper;
 use immaculate::report::page;
 use immaculate::report::page::content::{Content, Extent, Watch};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use std::path::{Path, PathBuf};
 
 /// Writes one HTML page: the papers' figures and tables, their claims with verdict and evidence, their errata, and the book of equations.
@@ -67,7 +68,7 @@ fn begin(bar: &ProgressBar, step: String, length: Option<usize>) {
         Some(_) => "{msg} {wide_bar} {pos}/{len}, {eta} left",
         None => "{spinner} {msg}: {pos} runs, {elapsed}",
     };
-    bar.set_style(ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar.set_style(style(template));
     bar.reset();
     bar.set_length(length.unwrap_or(0) as u64);
     bar.set_message(step);

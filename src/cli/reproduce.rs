@@ -2,7 +2,8 @@
 //!
 //! After this file the reader knows what is run for which paper, and what each file of `--out` is.
 
-use super::{Done, MOST_RUNS, Refusal, effort, json_text, make_directory, papers, progress_bar, write_file};
+use super::progress::bar;
+use super::{Done, MOST_RUNS, Refusal, effort, json_text, make_directory, papers, write_file};
 use clap::Args;
 use immaculate::paper::monte_carlo::Progress;
 use immaculate::paper::specification::Choices;
@@ -60,7 +61,7 @@ pub fn run(arguments: &Reproduce) -> Result<Done, Refusal> {
     if asks_for_cause {
         total += divergence::SIMULATIONS.len() * runs_for_cause;
     }
-    let bar = progress_bar(total as u64, "reproducing");
+    let bar = bar(total, "reproducing {wide_bar} {pos}/{len} runs, {eta} left");
     let advance: Progress = &|| bar.inc(1);
     let mut text = String::new();
     let (mut values, mut published) = (Vec::new(), Vec::new());
@@ -180,8 +181,7 @@ fn sweep(arguments: &Reproduce, papers: &[Paper], chosen: &Choices) -> Result<St
         return Err(Refusal::request("sustika2015 alone has a sweep"));
     }
     let effort = effort(arguments.runs, arguments.seed);
-    let bar = |length| progress_bar(length, "sweeping");
-    super::sweep::run(chosen, effort, arguments.out.as_deref(), arguments.json, bar)
+    super::sweep::run(chosen, effort, arguments.out.as_deref(), arguments.json)
 }
 
 /// A parameter that none of the papers has is a mistake; one that some have is set for these.

@@ -3,13 +3,13 @@
 //! After this file the reader knows how noises become a verdict with its proof, how a proof is written and checked again, and how the map
 //! is asked for.
 
+use super::progress::bar;
 use super::{Done, Refusal, json_text, make_directory, read_file, write_file};
 use clap::Args;
 use immaculate::oracle::certificate::{CertificateFile, FiltersFile, Noises};
 use immaculate::report::{stability, stability_map};
 use immaculate::steady::map::Map;
 use immaculate::steady::verdict::Depth;
-use indicatif::{ProgressBar, ProgressStyle};
 use std::path::PathBuf;
 
 /// Without arguments: the filters of derbez2000's figures 1 and 2.
@@ -147,11 +147,7 @@ fn map(arguments: &Stability) -> Result<Done, Refusal> {
         make_directory(directory)?;
     }
     let side = usize::from(arguments.points);
-    let bar = ProgressBar::new((side * side) as u64).with_message("deciding");
-    bar.set_style(
-        ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} points, {eta} left")
-            .unwrap_or_else(|_| ProgressStyle::default_bar()),
-    );
+    let bar = bar(side * side, "deciding {wide_bar} {pos}/{len} points, {eta} left");
     let decades = [f64::from(arguments.from), f64::from(arguments.to)];
     let map = Map::new(side, decades, depth(arguments), &|| bar.inc(1));
     bar.finish_and_clear();

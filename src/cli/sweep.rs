@@ -2,6 +2,7 @@
 //!
 //! After this file the reader knows where the journal of a sweep is, from which an interrupted one goes on, and what else is written.
 
+use super::progress::bar;
 use super::{Refusal, json_text, make_directory, write_file};
 use immaculate::paper::Effort;
 use immaculate::paper::specification::Choices;
@@ -9,20 +10,16 @@ use immaculate::paper::sustika2015::RUNS;
 use immaculate::paper::sustika2015::journal::BadJournal;
 use immaculate::paper::sustika2015::sweep::{Point, Setting, Sweep, Trajectory, settings};
 use immaculate::report::fit_error;
-use indicatif::ProgressBar;
 use serde_json::json;
 use std::path::Path;
 
 /// The sweep under some choices, with its files in a directory if there is one; the text, or JSON, of all its points.
-pub fn run(
-    choices: &Choices,
-    effort: Effort,
-    directory: Option<&Path>,
-    is_json: bool,
-    bar: impl Fn(u64) -> ProgressBar,
-) -> Result<String, Refusal> {
+pub fn run(choices: &Choices, effort: Effort, directory: Option<&Path>, is_json: bool) -> Result<String, Refusal> {
     let sweep = Sweep::new(choices, effort.runs.unwrap_or(RUNS), effort.seed).map_err(Refusal::request)?;
-    let bar = bar((settings().len() * sweep.runs) as u64);
+    let bar = bar(
+        settings().len() * sweep.runs,
+        "sweeping {wide_bar} {pos}/{len} runs, {eta} left",
+    );
     let advance = || bar.inc(1);
     let points = match directory {
         Some(directory) => with_files(&sweep, directory, &advance)?,

@@ -1,5 +1,7 @@
 //! Figures read back from their SVG: shapes with colours, and panels with axes that turn values into pixels.
 
+#![allow(clippy::float_cmp, reason = "axes stand at whole pixels, and widths are whole")]
+
 /// Something that is drawn.
 #[derive(Debug, Clone)]
 pub struct Shape {
@@ -122,20 +124,6 @@ impl Frame {
         self.inside(drawn, "rect", colour)
     }
 
-    /// The rectangle that is seen at a pixel: the last that covers it, but for the ground.
-    pub fn rectangle_at(&self, drawn: &[Shape], (x, y): (f64, f64)) -> Option<Shape> {
-        let covers = |shape: &&Shape| match shape.points[..] {
-            [from, to] => {
-                shape.kind == "rect"
-                    && from != (0.0, 0.0)
-                    && (from.0..=to.0).contains(&x)
-                    && (from.1..=to.1).contains(&y)
-            }
-            _ => false,
-        };
-        drawn.iter().rev().find(covers).cloned()
-    }
-
     /// Some points that are drawn are those values, and all of them: each is within so many pixels of one of the others.
     pub fn assert_through(&self, points: &[(f64, f64)], values: &[(f64, f64)], pixels: f64) {
         let inside = |(x, y): (f64, f64)| (x, y.clamp(self.top, self.bottom));
@@ -222,6 +210,17 @@ fn shape(element: &str) -> Option<Shape> {
 fn point(pair: &str) -> Option<(f64, f64)> {
     let (x, y) = pair.split_once(',')?;
     Some((x.parse().ok()?, y.parse().ok()?))
+}
+
+/// The rectangle that is seen at a pixel: the last that covers it, but for the ground.
+pub fn rectangle_at(drawn: &[Shape], (x, y): (f64, f64)) -> Option<Shape> {
+    let covers = |shape: &&Shape| match shape.points[..] {
+        [from, to] => {
+            shape.kind == "rect" && from != (0.0, 0.0) && (from.0..=to.0).contains(&x) && (from.1..=to.1).contains(&y)
+        }
+        _ => false,
+    };
+    drawn.iter().rev().find(covers).cloned()
 }
 
 /// The panels, row by row: each is known by its vertical axis, a thin line of ink, and the horizontal one that is drawn next.
