@@ -1,8 +1,11 @@
-//! Goal: whoever changes the program sees what the change does to the words and tables that people read, and to the JSON beside them.
+//! Goal: whoever changes the program sees what the change does to the words, tables and pictures that people look at, and to the JSON
+//! beside them.
 //!
-//! Method: snapshots of what is printed, from values that stand here and are small enough to be followed by eye; no filter is run. Kind of
-//! evidence: the weakest there is. A snapshot says what is printed, and a person reads whether it is right.
+//! Method: snapshots of what is printed and drawn, from values that stand here and are small enough to be followed by eye; no filter is
+//! run. Pictures are kept as SVG files, to be opened beside each other. Kind of evidence: the weakest there is. A snapshot says what is
+//! printed, and a person reads whether it is right.
 
+use immaculate::book;
 use immaculate::imm::Quantity::{self, CombinedMean, Gain, LogLikelihood, MixedCovariance, ModeProbabilities};
 use immaculate::number::Rational;
 use immaculate::oracle::case::{self, BadCase};
@@ -15,7 +18,6 @@ use immaculate::oracle::problem::FilterFile;
 use immaculate::oracle::subject::{Broken, Precision, Ready};
 use immaculate::oracle::trace::{Dimensions, Trace};
 use immaculate::oracle::variant::{self, Variant};
-use immaculate::paper::Paper;
 use immaculate::paper::result::{
     Consistency, Delay, Difference, ErrorFigure, ErrorHistory, FailedRun, FirstRun, FitDifference, Performance,
     Quantity as Measured, Reproduction,
@@ -24,11 +26,15 @@ use immaculate::paper::specification::Choices;
 use immaculate::paper::sustika2015::divergence::Row;
 use immaculate::paper::sustika2015::sweep::{Fit, Parameter, Point, Setting, Trajectory};
 use immaculate::paper::verdict::{Judgement as Claim, Verdict as Answer};
+use immaculate::paper::{Effort, Paper};
 use immaculate::report;
+use immaculate::report::long_term::{Panel, heat_maps};
+use immaculate::report::page::content::{Content, Extent, OfPaper, Runs};
 use immaculate::rule::RuleName;
 use immaculate::rule::unscented::Parameters;
 use immaculate::statistics::Estimate;
 use immaculate::steady::map::Map;
+use immaculate::steady::simulated::Grid;
 use immaculate::steady::verdict::{Depth, Filters, Verdict};
 use std::fmt::Write;
 use std::time::Duration;
@@ -398,22 +404,20 @@ fn claims_with_every_verdict() {
 
 #[test]
 fn the_sweep_and_what_makes_a_filter_diverge() {
-    let estimate = |value| Estimate {
-        value,
-        standard_error: 0.05,
-    };
-    let point = |value: f64| Point {
-        runs_with_jump: 4,
-        fits: [0, 1, 2].map(|filter| Fit {
-            mean: estimate(value + filter as f64),
-            median: value,
-            divergent: 2 * filter,
-            divergent_with_jump: filter,
-            failed: usize::from(filter == 2),
-        }),
-        unscented_less_converted: estimate(-0.25),
-        plain_less_converted: estimate(7.5),
-    };
+    let points: Vec<_> = sweep()
+        .into_iter()
+        .map(|(setting, value)| (setting, point(value)))
+        .collect();
+    let text = format!(
+        "{}\n{}",
+        report::fit_error::text(&points, 50),
+        report::divergence::text(&rows(), 50)
+    );
+    insta::assert_snapshot!("sweep", text);
+}
+
+/// Settings of a sweep, twenty of each kind, with a value that grows.
+fn sweep() -> Vec<(Setting, f64)> {
     let mut sweep = Vec::new();
     for trajectory in Trajectory::ALL {
         for parameter in Parameter::ALL {
@@ -425,29 +429,43 @@ fn the_sweep_and_what_makes_a_filter_diverge() {
                         parameter,
                         value,
                     },
-                    point(value),
+                    value,
                 )
             }));
         }
     }
-    let rows = [
-        Row {
-            scenario: "matched-manoeuvring",
-            window: "toolbox",
-            point: point(1.0),
-        },
-        Row {
-            scenario: "mismatched-manoeuvring",
-            window: "printed",
-            point: point(2.0),
-        },
-    ];
-    let text = format!(
-        "{}\n{}",
-        report::fit_error::text(&sweep, 50),
-        report::divergence::text(&rows, 50)
-    );
-    insta::assert_snapshot!("sweep", text);
+    sweep
+}
+
+fn point(value: f64) -> Point {
+    let estimate = |value| Estimate {
+        value,
+        standard_error: 0.05,
+    };
+    Point {
+        runs_with_jump: 4,
+        fits: [0, 1, 2].map(|filter| Fit {
+            mean: estimate(value + filter as f64),
+            median: value,
+            divergent: 2 * filter,
+            divergent_with_jump: filter,
+            failed: usize::from(filter == 2),
+        }),
+        unscented_less_converted: estimate(-0.25),
+        plain_less_converted: estimate(7.5),
+    }
+}
+
+fn rows() -> [Row; 2] {
+    let row = |scenario, window, value| Row {
+        scenario,
+        window,
+        point: point(value),
+    };
+    [
+        row("matched-manoeuvring", "toolbox", 1.0),
+        row("mismatched-manoeuvring", "printed", 2.0),
+    ]
 }
 
 /// Figures that can be told apart, for as many filters as the paper's first table has columns; two steps.
@@ -566,6 +584,166 @@ fn failures(count: usize) -> Vec<FailedRun> {
     (1..=count).map(failed).collect()
 }
 
+// The papers' figures as pictures
+
+#[test]
+fn the_pictures_of_a_reproduction() {
+    let mut of_paper = reproduction(Paper::Liu2017, Choices::default());
+    picture("errors", report::figure::errors(&of_paper).unwrap());
+    picture(
+        "mode_probabilities",
+        report::figure::mode_probabilities(&of_paper).unwrap(),
+    );
+    let mut first_run = of_paper.first_run.take().unwrap();
+    picture("path", report::path::path(&of_paper, &first_run).unwrap());
+    first_run.sensor = Some([50.0, -20.0]);
+    of_paper.motions = vec!["constant velocity", "constant acceleration"];
+    picture("path_with_sensor", report::path::path(&of_paper, &first_run).unwrap());
+    let comparisons = report::reproduction::published_and_computed(Paper::Liu2017, &of_paper);
+    let published = report::published::published_and_computed(Paper::Liu2017, &comparisons).unwrap();
+    picture("published", published.unwrap());
+}
+
+#[test]
+fn the_pictures_of_a_sweep() {
+    for (factor, name) in [(1.0, "sweep"), (20.0, "sweep_divergent")] {
+        let points: Vec<_> = sweep()
+            .into_iter()
+            .map(|(setting, value)| (setting, point(factor * value)))
+            .collect();
+        picture(
+            name,
+            report::fit_error::draw(&points, Trajectory::Manoeuvring, 50).unwrap(),
+        );
+    }
+}
+
+#[test]
+fn the_picture_and_the_rule_of_the_conversions() {
+    picture("conversions", report::conversion::figure().unwrap());
+    insta::assert_snapshot!("conversions_rule", report::conversion::table());
+}
+
+#[test]
+fn the_pictures_of_stability_and_of_predictions() {
+    picture("map", report::stability_map::draw(&small_map()).unwrap());
+    let grid = Grid {
+        rows: vec![1.0, 2.0],
+        columns: vec![10.0, 20.0, 30.0],
+        ..Grid::figure_2(2.0)
+    };
+    let panel = |title: &str, sign: f64| Panel {
+        title: title.into(),
+        grid: grid.clone(),
+        percentages: [-200.0, -50.0, 0.0, 50.0, 200.0, f64::NAN]
+            .map(|value| sign * value)
+            .to_vec(),
+    };
+    let panels = [panel("one", 1.0), panel("two", -1.0), panel("three", 0.5)];
+    picture("heat_maps", heat_maps(&panels, 2).unwrap());
+}
+
+/// A picture is kept as a file of its own, which a browser shows.
+fn picture(name: &str, svg: String) {
+    insta::assert_binary_snapshot!(&format!("picture_{name}.svg"), svg.into_bytes());
+}
+
+// The page and the book
+
+#[test]
+fn an_equation_in_full() {
+    // Lines move with every change above them.
+    let without_lines = |text: String| {
+        let mut parts = text.split(".rs:");
+        let first = parts.next().unwrap_or_default().to_owned();
+        parts.fold(first, |all, part| {
+            all + ".rs:" + part.trim_start_matches(|c: char| c.is_ascii_digit())
+        })
+    };
+    // A value of a step with an erratum, one outside of steps, and one that several functions realise.
+    for (name, asked) in [
+        ("step", "zhu2016 57"),
+        ("outside", "zhu2016 64"),
+        ("several", "derbez2000 mixed-mean"),
+    ] {
+        let [entry] = book::find::find(asked).unwrap()[..] else {
+            panic!("{asked} is one equation")
+        };
+        insta::assert_snapshot!(
+            format!("equation_{name}"),
+            without_lines(report::equation::in_full(entry))
+        );
+        let json = without_lines(pretty(&report::equation::json(entry)));
+        let json: Vec<&str> = json.lines().filter(|line| !line.contains("\"line\":")).collect();
+        insta::assert_snapshot!(format!("equation_{name}_json"), json.join("\n"));
+    }
+}
+
+#[test]
+fn the_words_of_the_page() {
+    let judgement = |verdict| Claim {
+        id: "a-claim".into(),
+        quote: "it is better".into(),
+        place: "section 4".into(),
+        question: "Is it?".into(),
+        verdict,
+        evidence: "Some figures.".into(),
+    };
+    let of_paper = |paper: Paper| OfPaper {
+        paper,
+        simulations: paper
+            .simulations(&Choices::default())
+            .into_iter()
+            .map(|choices| {
+                vec![
+                    reproduction(paper, choices.clone()),
+                    reproduction(paper, choices.with("a", "b")),
+                ]
+            })
+            .collect(),
+        judgements: vec![judgement(Answer::Proven), judgement(Answer::Refuted)],
+    };
+    let content = Content {
+        extent: Extent {
+            effort: Effort {
+                runs: Some(20),
+                seed: 7,
+            },
+            map_points: 5,
+        },
+        papers: Paper::ALL.map(of_paper).to_vec(),
+        sweep: Runs {
+            runs: 50,
+            results: sweep()
+                .into_iter()
+                .map(|(setting, value)| (setting, point(value)))
+                .collect(),
+        },
+        divergence: Runs {
+            runs: 50,
+            results: rows().to_vec(),
+        },
+        map: small_map(),
+    };
+    let page = report::page::html(&content).unwrap();
+    // Drawings and formulas have tests of their own, and so has the book.
+    let (front, _) = page.split_once("<section class=\"book\"").unwrap();
+    let (_, front) = front.split_once("<body>").unwrap();
+    let mut text = String::new();
+    let mut is_shown = true;
+    for part in front.split('<') {
+        let (tag, words) = part.split_once('>').unwrap_or(("", part));
+        for hidden in ["svg", "math"] {
+            is_shown &= !tag.starts_with(hidden);
+            is_shown |= tag == format!("/{hidden}");
+        }
+        if is_shown && !words.trim().is_empty() {
+            let _ = writeln!(text, "{}", words.trim());
+        }
+    }
+    insta::assert_snapshot!("page", text);
+}
+
 // Rules, and fixed gains
 
 #[test]
@@ -625,12 +803,7 @@ fn pairs_of_fixed_gain_filters_that_are_stable_unstable_and_undecided() {
 
 #[test]
 fn the_map_of_stability_as_text_and_data() {
-    let depth = Depth {
-        word: 6,
-        run: 6,
-        memory: 2,
-    };
-    let map = Map::new(5, [-2.0, 2.0], depth, &|| ());
+    let map = small_map();
     let counted = map
         .points
         .iter()
@@ -644,6 +817,15 @@ fn the_map_of_stability_as_text_and_data() {
         pretty(&report::stability::map_json(&map)),
     ];
     insta::assert_snapshot!("stability_map", parts.join("\n"));
+}
+
+fn small_map() -> Map {
+    let depth = Depth {
+        word: 6,
+        run: 6,
+        memory: 2,
+    };
+    Map::new(5, [-2.0, 2.0], depth, &|| ())
 }
 
 fn pretty(value: &serde_json::Value) -> String {
