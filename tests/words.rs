@@ -30,12 +30,15 @@ use immaculate::paper::{Effort, Paper};
 use immaculate::report;
 use immaculate::report::long_term::{Panel, heat_maps};
 use immaculate::report::page::content::{Content, Extent, OfPaper, Runs};
+use immaculate::report::reproduction::Comparison;
 use immaculate::rule::RuleName;
 use immaculate::rule::unscented::Parameters;
 use immaculate::statistics::Estimate;
+use immaculate::steady::certificate::Quadratics;
 use immaculate::steady::map::Map;
 use immaculate::steady::simulated::Grid;
 use immaculate::steady::verdict::{Depth, Filters, Verdict};
+use nalgebra::Matrix3;
 use std::fmt::Write;
 use std::time::Duration;
 
@@ -60,7 +63,8 @@ fn a_verdict_in_which_all_is_right() {
             echo,
             cases,
             diagnosis: Diagnosis::Nothing,
-            hidden: Vec::new(),
+            // Where nothing was judged, nothing is said of what was never shown.
+            hidden: if echo.is_none() { vec![Gain] } else { Vec::new() },
             not_asked: 0,
             remarks: Vec::new(),
             ..of_every_outcome()
@@ -101,6 +105,11 @@ fn every_kind_of_diagnosis() {
         },
         Diagnosis::Unknown {
             best: vec![mistake],
+            unexplained: (1..=5).map(|number| format!("case-{number}")).collect(),
+            of: 8,
+        },
+        Diagnosis::Unknown {
+            best: vec![mistake],
             unexplained: Vec::new(),
             of: 2,
         },
@@ -119,6 +128,18 @@ fn every_kind_of_diagnosis() {
         let _ = write!(text, "{}\n{}\n\n", report::check::text(&report), json["diagnosis"]);
     }
     insta::assert_snapshot!("diagnoses", text);
+}
+
+#[test]
+fn a_fault_in_every_quantity() {
+    let faults = Quantity::ALL.map(|quantity| fault(quantity, 0)).to_vec();
+    let report = Report {
+        // Three cases in which the equations have no answer, which are all named.
+        cases: vec![wrong("a", faults), wrong("b", Vec::new()), wrong("c", Vec::new())],
+        diagnosis: Diagnosis::Nothing,
+        ..of_every_outcome()
+    };
+    insta::assert_snapshot!("verdict_faults", report::check::text(&report));
 }
 
 /// A report in which every outcome and every finding occurs once at least.
@@ -301,6 +322,10 @@ fn cases_that_were_verified() {
     );
     insta::assert_snapshot!("cases_verified", text);
     insta::assert_snapshot!("cases_listed", report::cases::list(&[two, three]));
+    // In full a case is its two files under its name and what it is for.
+    let shown = report::cases::show(two);
+    assert!(shown.starts_with("step.n4-m2.two-modes\n  One step of two Kalman filters"));
+    assert!(shown.ends_with(&format!("\n{}\n{}", two.problem_text, two.trace_text)));
 }
 
 #[test]
@@ -398,6 +423,7 @@ fn claims_with_every_verdict() {
         report::claims::heading(Paper::Zhu2016.specification()),
         report::claims::text(&claims),
         report::claims::summary(&claims),
+        report::claims::summary(&claims[..2]),
     ];
     insta::assert_snapshot!("claims", parts.concat());
 }
@@ -422,15 +448,15 @@ fn sweep() -> Vec<(Setting, f64)> {
     for trajectory in Trajectory::ALL {
         for parameter in Parameter::ALL {
             let values = (1..=20).map(|k| f64::from(k) / 10.0);
+            let factor = f64::from(1 + u8::from(trajectory == Trajectory::Manoeuvring));
+            let shift = f64::from(u8::from(parameter == Parameter::BearingDegrees)) / 4.0;
             sweep.extend(values.map(|value| {
-                (
-                    Setting {
-                        trajectory,
-                        parameter,
-                        value,
-                    },
+                let setting = Setting {
+                    trajectory,
+                    parameter,
                     value,
-                )
+                };
+                (setting, factor * value + shift)
             }));
         }
     }
@@ -589,6 +615,10 @@ fn failures(count: usize) -> Vec<FailedRun> {
 #[test]
 fn the_pictures_of_a_reproduction() {
     let mut of_paper = reproduction(Paper::Liu2017, Choices::default());
+    // One filter has a step without a standard error, and two are within a pixel of each other.
+    of_paper.filters[1].rmse[0].standard_errors[0] = f64::NAN;
+    let same = of_paper.filters[2].rmse.clone();
+    of_paper.filters[3].rmse = same;
     picture("errors", report::figure::errors(&of_paper).unwrap());
     picture(
         "mode_probabilities",
@@ -599,9 +629,19 @@ fn the_pictures_of_a_reproduction() {
     first_run.sensor = Some([50.0, -20.0]);
     of_paper.motions = vec!["constant velocity", "constant acceleration"];
     picture("path_with_sensor", report::path::path(&of_paper, &first_run).unwrap());
-    let comparisons = report::reproduction::published_and_computed(Paper::Liu2017, &of_paper);
-    let published = report::published::published_and_computed(Paper::Liu2017, &comparisons).unwrap();
-    picture("published", published.unwrap());
+    let mut comparisons = report::reproduction::published_and_computed(Paper::Liu2017, &of_paper);
+    let published = |comparisons: &[Comparison]| {
+        let drawn = report::published::published_and_computed(Paper::Liu2017, comparisons);
+        drawn.unwrap().unwrap()
+    };
+    picture("published", published(&comparisons));
+    // Near to each other and far from zero, as most published figures are; and on either side of zero.
+    for (place, of) in comparisons.iter_mut().enumerate() {
+        (of.published, of.computed) = (100.0, 99.0 + place as f64 / 4.0);
+    }
+    picture("published_near", published(&comparisons[..4]));
+    comparisons[0].computed = -1.0;
+    picture("published_below_zero", published(&comparisons[..4]));
 }
 
 #[test]
@@ -677,6 +717,12 @@ fn an_equation_in_full() {
         let json: Vec<&str> = json.lines().filter(|line| !line.contains("\"line\":")).collect();
         insta::assert_snapshot!(format!("equation_{name}_json"), json.join("\n"));
     }
+}
+
+#[test]
+fn equations_in_a_table() {
+    let some: Vec<_> = book::entries_of(Paper::Liu2017).take(5).collect();
+    insta::assert_snapshot!("equations", report::equation::table_of(&some));
 }
 
 #[test]
@@ -764,6 +810,7 @@ fn rules_with_and_without_a_degree() {
         ("unscented", 2),
         ("gauss-hermite-3", 2),
         ("gauss-hermite-4", 1),
+        ("gauss-hermite-5", 3),
         ("cubature-3", 11),
     ] {
         describe(&name.parse().unwrap(), name, n);
@@ -775,6 +822,8 @@ fn rules_with_and_without_a_degree() {
         2,
     );
     insta::assert_snapshot!("rules", text);
+    assert!(report::rule::describe(&RuleName::ThirdDegree, "cubature-3", 32).is_ok());
+    assert!(report::rule::describe(&RuleName::ThirdDegree, "cubature-3", 33).is_err());
 }
 #[test]
 fn pairs_of_fixed_gain_filters_that_are_stable_unstable_and_undecided() {
@@ -798,6 +847,13 @@ fn pairs_of_fixed_gain_filters_that_are_stable_unstable_and_undecided() {
             pretty(&report::stability::json("Two filters.", &answer, None))
         );
     }
+    // Eight forms, of which four are shown; that they prove nothing is not asked here.
+    let verdict = Verdict::Stable(Quadratics {
+        edges: Quadratics::<3>::memory(2, 3),
+        forms: (1..=8).map(|k| Matrix3::from_diagonal_element(q(k, 1))).collect(),
+    });
+    let answer = report::stability::Answer::new(&Filters::Roots([q(1, 2), q(1, 2)]), verdict);
+    text.push_str(&report::stability::text("Two filters.", &answer));
     insta::assert_snapshot!("stability", text);
 }
 
