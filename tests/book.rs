@@ -290,6 +290,9 @@ fn items_are_shown_with_their_own_code_and_place() {
             "/// Outer.\n#[derive(Debug)]\npub struct Of<T> {\n    /// Inner.\n    pub part: T,\n}\n\n",
             "impl<T> Of<T> {\n    /// What it does.\n    ///\n    /// More.\n    fn does(&self) {\n        // in a comment\n    }\n}\n",
             "/// A choice.\npub enum Choice {\n    /// One.\n    One,\n    Two,\n}\n",
+            "/// Short.\ntype Short = u8;\n/// Kept.\npub static KEPT: u8 = 1;\n/// Fixed.\nconst FIXED: u8 = 2;\n",
+            "/// Able.\npub trait Able {\n    /// Can.\n    fn can(&self);\n}\n",
+            "mod inner {\n    impl super::Choice {\n        /// All.\n        pub const ALL: u8 = 3;\n    }\n}\n",
         ),
     };
     let items = items_of(&file).unwrap();
@@ -316,6 +319,18 @@ fn items_are_shown_with_their_own_code_and_place() {
             ("Of::does", "method", 12, false, does),
             ("Choice", "type", 17, true, choice),
             ("Choice::One", "variant", 19, true, "One,\n"),
+            ("Short", "type", 23, false, "type Short = u8;\n"),
+            ("KEPT", "constant", 25, true, "pub static KEPT: u8 = 1;\n"),
+            ("FIXED", "constant", 27, false, "const FIXED: u8 = 2;\n"),
+            (
+                "Able",
+                "trait",
+                29,
+                true,
+                "pub trait Able {\n    /// Can.\n    fn can(&self);\n}\n"
+            ),
+            ("Able::can", "method", 31, true, "fn can(&self);\n"),
+            ("Choice::ALL", "constant", 36, true, "pub const ALL: u8 = 3;\n"),
         ]
     );
     assert_eq!(items[2].doc, "What it does.\n\nMore.\n");

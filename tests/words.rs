@@ -692,14 +692,6 @@ fn picture(name: &str, svg: String) {
 
 #[test]
 fn an_equation_in_full() {
-    // Lines move with every change above them.
-    let without_lines = |text: String| {
-        let mut parts = text.split(".rs:");
-        let first = parts.next().unwrap_or_default().to_owned();
-        parts.fold(first, |all, part| {
-            all + ".rs:" + part.trim_start_matches(|c: char| c.is_ascii_digit())
-        })
-    };
     // A value of a step with an erratum, one outside of steps, and one that several functions realise.
     for (name, asked) in [
         ("step", "zhu2016 57"),
@@ -711,9 +703,9 @@ fn an_equation_in_full() {
         };
         insta::assert_snapshot!(
             format!("equation_{name}"),
-            without_lines(report::equation::in_full(entry))
+            without_lines(&report::equation::in_full(entry))
         );
-        let json = without_lines(pretty(&report::equation::json(entry)));
+        let json = without_lines(&pretty(&report::equation::json(entry)));
         let json: Vec<&str> = json.lines().filter(|line| !line.contains("\"line\":")).collect();
         insta::assert_snapshot!(format!("equation_{name}_json"), json.join("\n"));
     }
@@ -775,9 +767,30 @@ fn the_words_of_the_page() {
     // Drawings and formulas have tests of their own, and so has the book.
     let (front, _) = page.split_once("<section class=\"book\"").unwrap();
     let (_, front) = front.split_once("<body>").unwrap();
+    insta::assert_snapshot!("page", words_of(front));
+}
+
+#[test]
+fn an_equation_in_the_book() {
+    let chapter = book::html::chapter(Paper::Zhu2016).into_string();
+    // One as it is printed, one that is corrected, and one that is outside of steps.
+    let mut text = String::new();
+    for anchor in ["zhu2016-56", "zhu2016-24", "zhu2016-64"] {
+        let (_, section) = chapter.split_once(&format!("id=\"{anchor}\">")).unwrap();
+        let section = section.split("<section class=\"equation\"").next().unwrap();
+        let _ = writeln!(text, "{}", without_lines(&words_of(section)));
+    }
+    insta::assert_snapshot!("book", text);
+    let index = without_lines(&words_of(&book::html::index().into_string()));
+    let few: Vec<&str> = index.lines().take(60).collect();
+    insta::assert_snapshot!("book_index", few.join("\n"));
+}
+
+/// What HTML says, without its drawings and formulas.
+fn words_of(html: &str) -> String {
     let mut text = String::new();
     let mut is_shown = true;
-    for part in front.split('<') {
+    for part in html.split('<') {
         let (tag, words) = part.split_once('>').unwrap_or(("", part));
         for hidden in ["svg", "math"] {
             is_shown &= !tag.starts_with(hidden);
@@ -787,7 +800,16 @@ fn the_words_of_the_page() {
             let _ = writeln!(text, "{}", words.trim());
         }
     }
-    insta::assert_snapshot!("page", text);
+    text
+}
+
+/// A text without the lines at which code stands: they move with every change above them.
+fn without_lines(text: &str) -> String {
+    let mut parts = text.split(".rs:");
+    let first = parts.next().unwrap_or_default().to_owned();
+    parts.fold(first, |all, part| {
+        all + ".rs:" + part.trim_start_matches(|c: char| c.is_ascii_digit())
+    })
 }
 
 // Rules, and fixed gains
