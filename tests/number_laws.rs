@@ -600,18 +600,19 @@ fn what_a_number_carries_takes_part() {
         [-two, two - Counting::integer(5), -input].map(Counting::value),
         [-2.0, -3.0, -2.0]
     );
-    let (_, once) = Counting::count(|| (input * input + input / input).sqrt().exp());
+    let (_, once) = Counting::count(|| (Counting::zero() + input * input + input / input).sqrt().exp());
     let thrice = once.and(&once).and(&once);
     let counts = |tally: Tally| {
         [
             tally.additions,
+            tally.first_additions,
             tally.multiplications,
             tally.divisions,
             tally.roots,
             tally.functions,
         ]
     };
-    assert_eq!((counts(once), counts(thrice)), ([1; 5], [3; 5]));
+    assert_eq!((counts(once), counts(thrice)), ([1; 6], [3; 6]));
 }
 
 /// A number that counts is written as the double that it is, and a dual number with its slope beside ε, in the width that is asked for.
@@ -620,7 +621,7 @@ fn numbers_that_carry_something_say_what() {
     let counted = Counting::input(2.5, Convention::Dense);
     assert_eq!(format!("{counted:6.2} {counted:?}"), "  2.50 2.5");
     let dual = Dual::new(Rational::new(1, 2), Rational::new(3, 1));
-    assert_eq!(format!("{dual:>14}"), "    1/2 + (3)ε");
+    assert_eq!(format!("{dual:>14} {dual:?}"), "    1/2 + (3)ε 1/2 + (3)ε");
 }
 
 #[test]
@@ -709,7 +710,13 @@ fn rational_functions_print_as_they_are_written() {
     let coefficient = RationalFunction::surd(&(root(2) + Surd::one()));
     assert_eq!((coefficient * n() - integer(3)).to_string(), "(√2 + 1)·n - 3");
     let m = RationalFunction::unknown("m");
-    assert_eq!((integer(1) / (m * n())).to_string(), "1/(m·n)");
+    let product = m * n();
+    assert_eq!((integer(1) / product.clone()).to_string(), "1/(m·n)");
+    // In messages of tests too, numerator and denominator as well.
+    assert_eq!(
+        format!("{product:?} {:?} {:?}", product.numerator(), Surd::ratio(1, 2)),
+        "m·n m·n 1/2"
+    );
 }
 
 // Doubles
@@ -994,4 +1001,132 @@ fn an_outer_count_includes_the_inner_one() {
     });
     assert_eq!((inner.additions, outer.additions), (3, 6));
     assert_eq!(Counting::count(|| ()).1.total(Convention::Matlab), 0);
+}
+
+/// A number of each origin: the type's zero and one, a constant, data, and data times the type's one, as a product of matrices makes it.
+fn of_each_origin() -> [Counting; 5] {
+    let input = |value| Counting::input(value, Convention::Dense);
+    let (zero, one) = (Counting::zero(), Counting::one());
+    [zero, one, Counting::integer(2), input(3.0), one * input(5.0)]
+}
+
+/// Which of them a number is, from what it costs to go on with it.
+fn origin(number: Counting) -> char {
+    let data = Counting::input(7.0, Convention::Dense);
+    let tally = |work: &dyn Fn() -> Counting| Counting::count(work).1;
+    if tally(&|| number + data).first_additions == 1 {
+        return 'Z';
+    }
+    let product = tally(&|| number * data);
+    match tally(&|| number + Counting::integer(2)).additions {
+        0 if product.multiplications == 0 => 'O',
+        0 => 'C',
+        _ if product.first_additions == 1 => 'S',
+        _ => 'D',
+    }
+}
+
+/// Each operation on numbers of each origin, in a table: the origin of the result, and what it costs: nothing (.), one operation (1), a
+/// first addition (f), an addition that takes back a first one (t), a product that is thought to be a first one (p).
+#[test]
+fn where_numbers_come_from_decides_what_an_operation_costs() {
+    type Operation = fn(Counting, Counting) -> Counting;
+    type OfDoubles = fn(f64, f64) -> f64;
+    //                                                   Z  O  C  D  S
+    let tables: [(Operation, OfDoubles, [&str; 5]); 4] = [
+        (
+            |x, y| x + y,
+            |x, y| x + y,
+            [
+                "Z. O. C. Df D.",
+                "O. C. C. D1 D1",
+                "C. C. C. D1 D1",
+                "Df D1 D1 D1 Dt",
+                "D. D1 D1 Dt D1",
+            ],
+        ),
+        (
+            |x, y| x - y,
+            |x, y| x - y,
+            [
+                "Z. C. C. D. D.",
+                "O. C. C. D1 D1",
+                "C. C. C. D1 D1",
+                "D. D1 D1 D1 D1",
+                "D. D1 D1 D1 D1",
+            ],
+        ),
+        (
+            |x, y| x * y,
+            |x, y| x * y,
+            [
+                "Z. Z. Z. Z. Z.",
+                "Z. O. C. S. S.",
+                "Z. C. C. D1 D1",
+                "Z. D. D1 D1 D1",
+                "Z. D. Dp Dp Dp",
+            ],
+        ),
+        (
+            |x, y| x / y,
+            |x, y| x / y,
+            [
+                "C. Z. C. Z. Z.",
+                "C. O. C. D1 D1",
+                "C. C. C. D1 D1",
+                "D1 D. D1 D1 D1",
+                "D1 D. D1 D1 D1",
+            ],
+        ),
+    ];
+    let numbers = of_each_origin();
+    assert_eq!(numbers.map(origin), ['Z', 'O', 'C', 'D', 'S']);
+    for (operation, of_doubles, table) in tables {
+        for (x, row) in numbers.iter().zip(table) {
+            for (y, expected) in numbers.iter().zip(row.split(' ')) {
+                // A first addition before, so that one can be taken back.
+                let (result, tally) = Counting::count(|| {
+                    let _ = Counting::zero() + numbers[3];
+                    operation(*x, *y)
+                });
+                let others = tally.multiplications + tally.divisions;
+                let cost = match (tally.additions, others, tally.first_additions) {
+                    (0, 0, 1) => '.',
+                    (1, 0, 1) | (0, 1, 1) => '1',
+                    (0, 0, 2) => 'f',
+                    (1, 0, 0) => 't',
+                    (0, 1, 2) => 'p',
+                    _ => '?',
+                };
+                assert_eq!(
+                    format!("{}{cost}", origin(result)),
+                    expected,
+                    "{x} and {y} give {result}"
+                );
+                let value = of_doubles(x.value(), y.value());
+                assert!(
+                    value.is_nan() && result.value().is_nan() || value == result.value(),
+                    "{x} and {y}: {result}"
+                );
+            }
+        }
+    }
+    assert_eq!(numbers.map(|x| origin(-x)), ['Z', 'C', 'C', 'D', 'D']);
+    assert_eq!(numbers.map(|x| (-x).value()), numbers.map(|x| -x.value()));
+    // A function of what is not given is computed once; a root is counted apart.
+    let cost = |work: &dyn Fn() -> Counting| {
+        let (result, tally) = Counting::count(work);
+        (origin(result), tally.functions, tally.roots)
+    };
+    for x in numbers {
+        let is_given = matches!(origin(x), 'D' | 'S');
+        let (kind, once) = if is_given { ('D', 1) } else { ('C', 0) };
+        for function in [Real::exp, Real::ln, Real::sin, Real::cos, |x: &Counting| {
+            x.atan2(&Counting::one())
+        }] {
+            assert_eq!(cost(&|| function(&x)), (kind, once, 0));
+        }
+        assert_eq!(cost(&|| Counting::one().atan2(&x)), (kind, once, 0));
+        assert_eq!(cost(&|| x.sqrt()), (kind, 0, once));
+    }
 }

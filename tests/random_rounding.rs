@@ -168,19 +168,43 @@ fn infinities_and_values_that_are_no_numbers_stay_what_they_are() {
     });
 }
 
-/// The first numbers of SplitMix64 from the state 1234567, as its users publish them for comparison; the noise is their upper halves, which
-/// a perturbation of a whole unit shows bit by bit.
+/// The first numbers of SplitMix64 from the states 0 and 1234567, as its users publish them for comparison; the noise is their upper halves,
+/// which a perturbation of a whole unit shows bit by bit.
 #[test]
 fn the_noise_is_that_of_the_named_generator() {
-    const KNOWN: [u64; 5] = [
-        6_457_827_717_110_365_317,
-        3_203_168_211_198_807_973,
-        9_817_491_932_198_370_423,
-        4_593_380_528_125_082_431,
-        16_408_922_859_458_223_821,
+    const KNOWN: [(u64, [u64; 5]); 2] = [
+        (
+            0,
+            [
+                0xe220_a839_7b1d_cdaf,
+                0x6e78_9e6a_a1b9_65f4,
+                0x06c4_5d18_8009_454f,
+                0xf88b_b8a8_724c_81ec,
+                0x1b39_896a_51a8_749b,
+            ],
+        ),
+        (
+            1_234_567,
+            [
+                6_457_827_717_110_365_317,
+                3_203_168_211_198_807_973,
+                9_817_491_932_198_370_423,
+                4_593_380_528_125_082_431,
+                16_408_922_859_458_223_821,
+            ],
+        ),
     ];
     let draw = |_| (RandomRounding::input(1.0).value() - 1.0) * 2.0_f64.powi(30);
-    let drawn = RandomRounding::with(1.0, 1_234_567, || [0; 5].map(draw));
-    let expected = KNOWN.map(|known| f64::from(u32::try_from(known >> 32).unwrap().cast_signed()));
-    assert_eq!(drawn, expected);
+    for (state, known) in KNOWN {
+        let drawn = RandomRounding::with(1.0, state, || [0; 5].map(draw));
+        let expected = known.map(|known| f64::from(u32::try_from(known >> 32).unwrap().cast_signed()));
+        assert_eq!(drawn, expected);
+    }
+}
+
+/// A perturbed number is written as the double that carries it, in the width that is asked for.
+#[test]
+fn a_perturbed_number_is_written_as_its_double() {
+    let number = RandomRounding::exact(2.5);
+    assert_eq!(format!("{number:6.2} {number:?}"), "  2.50 2.5");
 }

@@ -26,7 +26,7 @@ use immaculate::steady::pair::{acceleration_matrix, frozen_matrix, product, rema
 use immaculate::steady::polynomial::{characteristic_polynomial, has_radius_below, is_stable_polynomial, rows_of};
 use immaculate::steady::reach::{polynomial_text, unseen_part};
 use immaculate::steady::riccati::{NoSteadyState, Riccati, SteadyState};
-use immaculate::steady::verdict::{Depth, Filters, Verdict};
+use immaculate::steady::verdict::{Depth, Filters, Verdict, rows_text, word_text};
 use nalgebra::{Matrix1, Matrix2, Matrix3, SMatrix, Vector2, Vector3};
 use num_traits::{One, Zero};
 
@@ -299,6 +299,9 @@ fn what_is_not_seen_and_does_not_decay_is_named() {
         part([["1", "1", "0"], ["0", "1", "0"], ["0", "0", "0"]], [["1", "0", "0"]]),
         "λ"
     );
+    // A polynomial that is zero is written as zero, and a one without an unknown is not left out.
+    assert_eq!(polynomial_text(&[Rational::zero()]), "0");
+    assert_eq!(polynomial_text(&["1", "0", "-1"].map(rational)), "−λ^2 + 1");
 }
 
 // The Riccati equation (exact)
@@ -359,6 +362,26 @@ fn a_steady_state_is_proven_by_two_bounds() {
             );
             assert!(difference.width() < 1e-40, "{q}, {r}: {difference}");
         }
+    }
+}
+
+/// Exact, and compared in doubles: U − L is 2ε W with the Lyapunov matrix W = A W Aᵀ + I of the closed loop between them, A = F(I − KH), and
+/// ε = 2^(−bits/2) of one more than the greatest entry.
+#[test]
+fn the_bounds_of_a_steady_state_are_as_far_apart_as_is_said() {
+    let t = rational("2");
+    for (q, r, bits) in [("5", "1/20", 60), ("1/1000", "3", 100), ("40", "1/1000", 200)] {
+        let problem = coordinate(constant_acceleration(&t), &acceleration_response(&t), q, r);
+        let SteadyState { lower, upper } = SteadyState::certify(&problem, bits).unwrap();
+        let middle = (&lower + &upper) * Rational::new(1, 2);
+        let greatest = middle.iter().map(|entry| entry.abs().to_f64()).fold(0.0, f64::max);
+        let unit = (upper - lower).map(|entry| (entry * Rational::integer(2).pow(bits / 2)).to_f64());
+        let shape = unit / (2.0 * (greatest + 1.0));
+        let kept = Matrix3::identity() - problem.gain(&middle) * &problem.measurement;
+        let a = (&problem.transition * kept).map(|entry| entry.to_f64());
+        let left_over = shape - a * shape * a.transpose() - Matrix3::identity();
+        // The middle is off by as much as the bounds are apart, 2⁻³⁰, and so are W and the distance; beside the size of W.
+        assert!(left_over.abs().max() < 1e-8 * shape.abs().max(), "{q} {r}: {left_over}");
     }
 }
 
@@ -723,6 +746,7 @@ fn a_common_form_proves_stability_and_a_spoilt_one_does_not() {
         forms: vec![form.clone()],
     };
     filters.check_stable(&proof).unwrap();
+    assert_eq!(rows_text(&proof.forms[0]), "[12 -2 -2; -2 7 -6; -2 -6 20]");
     let spoilt = |change: &dyn Fn(&mut Quadratics<3>)| {
         let mut proof = proof.clone();
         change(&mut proof);
@@ -776,6 +800,11 @@ fn whatever_is_decided_is_proven() {
             Verdict::Unstable(found) => {
                 filters.check_unstable(&found).unwrap();
                 assert_eq!(found.word.len(), letters, "{v} {a}");
+                let written = word_text(&found.word);
+                assert!(
+                    written.starts_with("vv") && written.ends_with('a') && written.len() == letters,
+                    "{written}"
+                );
             }
             Verdict::Undecided { growth } => panic!("{v} {a}: {growth}"),
         }

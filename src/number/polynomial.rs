@@ -66,16 +66,6 @@ impl Polynomial {
         self.terms.is_some()
     }
 
-    /// The value of a polynomial without unknowns; `None` if there are any, or if it is undecided.
-    pub fn as_constant(&self) -> Option<Surd> {
-        let terms = self.terms.as_ref()?;
-        match (terms.len(), terms.get(&Monomial::new())) {
-            (0, _) => Some(Surd::zero()),
-            (1, Some(constant)) => Some(constant.clone()),
-            _ => None,
-        }
-    }
-
     /// The exact value where the unknowns have the given values; `None` if one of them is not given, or if there is no
     /// decided value.
     pub fn evaluate(&self, assignments: &[(&str, Rational)]) -> Option<Surd> {

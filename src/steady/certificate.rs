@@ -92,13 +92,13 @@ pub struct Product {
 /// Why a certificate proves nothing.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum NotProven {
-    /// The graph has no nodes, or an edge that names something that does not exist.
+    /// An edge names something that does not exist.
     #[error("`quadratics.edges[{edge}]` names a node or a matrix that is not there")]
     Edge {
         /// The edge.
         edge: usize,
     },
-    /// A word has no path in the graph.
+    /// A word has no path in the graph; a graph without nodes has none for any.
     #[error("the graph is not complete: node {node} has no edge for matrix {letter}")]
     Incomplete {
         /// The node.

@@ -19,11 +19,11 @@
 //! State [p, ṗ, p̈], mode 0 constant velocity and mode 1 constant acceleration throughout.
 
 use super::mismatch::{Mismatch, motion_missed};
+use super::pair::mixing;
 use super::perturbation::{printed_spread_bound, second_moment, spread_term};
-use super::riccati::Riccati;
-use crate::filter::{kalman, update};
+use super::riccati::{DOUBLINGS, Riccati};
+use crate::filter::kalman;
 use crate::gaussian::log_density;
-use crate::imm::probability::{mixing_probability, predicted_mode_probability};
 use crate::matrix::ldl;
 use crate::model::acceleration::{
     acceleration_response, constant_acceleration, embedded_constant_velocity, embedded_velocity_response,
@@ -67,7 +67,7 @@ impl LongTerm {
     }
 }
 
-/// Which of the two forms of the algorithm.
+/// Which form of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
     /// As printed.
@@ -177,24 +177,13 @@ pub fn predict(setting: &Setting, form: Form) -> Option<LongTerm> {
 
 /// Steps 0 and 1: equal probabilities, and the steady covariances of the filters alone.
 fn first_round(setting: &Setting) -> Option<Round> {
-    // Thirty doublings: 2³⁰ steps of the recursion.
-    const DOUBLINGS: usize = 30;
-    let mut mixed = [Matrix3::zeros(); 2];
-    for (filter, mixed) in setting.filters().iter().zip(&mut mixed) {
-        let predicted = filter.doubled(DOUBLINGS)?;
-        *mixed = updated(filter, &predicted);
-    }
+    let settled = |filter: &Riccati<f64, 3, 1>| Some(filter.updated(&filter.doubled(DOUBLINGS)?));
+    let [velocity, acceleration] = setting.filters();
     Some(Round {
-        mixed,
+        mixed: [settled(&velocity)?, settled(&acceleration)?],
         probabilities: [0.5, 0.5],
         error: Matrix3::zeros(),
     })
-}
-
-/// P = P⁻ − K S Kᵀ.
-fn updated(filter: &Riccati<f64, 3, 1>, predicted: &Matrix3<f64>) -> Matrix3<f64> {
-    let s = kalman::innovation_covariance(&filter.measurement, predicted, &filter.measurement_noise);
-    update::updated_covariance(predicted, &filter.gain(predicted), &s)
 }
 
 /// What both forms compute from the mixed covariances by (2): predicted covariances, gains, updated covariances.
@@ -209,17 +198,9 @@ fn run_filters(setting: &Setting, mixed: &[Matrix3<f64>; 2]) -> Filters {
     let predicted = [0, 1].map(|j| kalman::predicted_covariance(&filters[j].transition, &mixed[j], &filters[j].noise));
     Filters {
         gains: [0, 1].map(|j| filters[j].gain(&predicted[j])),
-        updated: [0, 1].map(|j| updated(&filters[j], &predicted[j])),
+        updated: [0, 1].map(|j| filters[j].updated(&predicted[j])),
         predicted,
     }
-}
-
-/// Mixing probabilities as `[j][i]`, and the predicted mode probabilities, by (3).
-fn mixing(setting: &Setting, probabilities: &[f64; 2]) -> (Vec<Vec<f64>>, [f64; 2]) {
-    let chain = setting.chain();
-    let predicted = [0, 1].map(|j| predicted_mode_probability(&chain, probabilities, j));
-    let row = |j: usize| [0, 1].map(|i| mixing_probability(&chain, probabilities, &predicted[j], i, j));
-    ((0..2).map(|j| row(j).to_vec()).collect(), predicted)
 }
 
 /// What step 3 adds to mode i's covariance in the mixture for mode j.
@@ -252,7 +233,7 @@ fn printed_round(setting: &Setting, round: &Round, spread: Spread) -> Option<Rou
     let carried = matched.closed_loop * round.mixed[1] * matched.closed_loop.transpose() + gain * gain.transpose() * r;
     let errors = [mismatch.long_term_error()?, carried];
     // Step 3.
-    let (mixing, predicted) = mixing(setting, &round.probabilities);
+    let (mixing, predicted) = mixing(&setting.chain(), &round.probabilities);
     let covariances = [filters.updated[0], carried];
     let mixed = [0, 1].map(|j| {
         (0..2).fold(Matrix3::zeros(), |sum, i| {
@@ -281,7 +262,7 @@ fn printed_round(setting: &Setting, round: &Round, spread: Spread) -> Option<Rou
 /// Source: derbez2000, section 2.2, algorithm, corrected here.
 fn corrected_round(setting: &Setting, round: &Round) -> Option<Round> {
     let filters = run_filters(setting, &round.mixed);
-    let (mixing, predicted) = mixing(setting, &round.probabilities);
+    let (mixing, predicted) = mixing(&setting.chain(), &round.probabilities);
     // Step 2.
     let errors = JointErrors::new(setting, &filters.gains, &mixing)?;
     // Step 3: (1), with the expectation of its second term.

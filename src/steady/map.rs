@@ -4,10 +4,9 @@
 //! roots, so that every verdict but "undecided" is a theorem about exact numbers.
 
 use super::gains;
-use super::pair::frozen_matrix;
+use super::pair::{frozen_matrix, mixing};
 use super::search::spectral_radius;
 use super::verdict::{Depth, Filters, Verdict};
-use crate::imm::probability::{mixing_probability, predicted_mode_probability};
 use crate::number::{Rational, Real};
 use nalgebra::SMatrix;
 use rayon::prelude::*;
@@ -104,12 +103,7 @@ pub fn greatest_frozen_radius(filters: &Filters) -> f64 {
     let radius = |logit: i32| {
         let first = 1.0 / (1.0 + Real::exp(&-f64::from(logit)));
         let before = [first, 1.0 - first];
-        let mixing = [0, 1].map(|j| {
-            let predicted = predicted_mode_probability(&transition, &before, j);
-            [0, 1]
-                .map(|i| mixing_probability(&transition, &before, &predicted, i, j))
-                .to_vec()
-        });
+        let (mixing, _) = mixing(&transition, &before);
         let rows = frozen_matrix(&mixing, &matrices);
         spectral_radius(&SMatrix::<f64, 6, 6>::from_fn(|i, j| rows[i][j]))
     };
@@ -121,11 +115,12 @@ fn power_of_ten(exponent: f64) -> f64 {
     Real::exp(&(exponent * Real::ln(&10.0)))
 }
 
-/// A rational with three significant digits of the lesser of its distances from zero and from one.
+/// A rational with three significant digits of the lesser of its distances from zero and from one; with fewer, or none, where these would be
+/// beyond the 22nd decimal, as far as a power of ten is a double.
 fn short(root: f64) -> Rational {
     let distance = root.min(1.0 - root);
     let mut scale = 100.0;
-    while distance * scale < 100.0 {
+    while distance * scale < 100.0 && scale < 1e22 {
         scale *= 10.0;
     }
     Rational::from_f64((root * scale).round()) / Rational::from_f64(scale)

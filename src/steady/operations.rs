@@ -158,7 +158,6 @@ fn identity(convention: Convention) -> Matrix3<Counting> {
 /// One cycle of an IMM filter.
 fn imm_cycle(convention: Convention, equations: &Table, fixed_gains: Option<Vec<FixedGain<Counting, 3, 1>>>) -> Tally {
     let number = |value: f64| Counting::input(value, convention);
-    let has_covariance = fixed_gains.is_none();
     let problem = Problem {
         modes: modes(convention),
         transition: vec![vec![number(0.95), number(0.05)], vec![number(0.05), number(0.95)]],
@@ -167,12 +166,8 @@ fn imm_cycle(convention: Convention, equations: &Table, fixed_gains: Option<Vec<
         rule: None,
         fixed_gains,
     };
-    let mut start = estimate(convention);
-    if !has_covariance {
-        start.covariance = Matrix3::zeros();
-    }
     let initial = Initial {
-        modes: vec![start; 2],
+        modes: vec![estimate(convention); 2],
         mode_probabilities: vec![number(0.5), number(0.5)],
     };
     let mut filter = Imm::unchecked(problem, *equations, &initial);

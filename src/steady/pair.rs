@@ -23,10 +23,11 @@
 
 use super::gains;
 use super::polynomial::Rows;
-use super::riccati::Riccati;
+use super::riccati::closed_loop;
+use crate::imm::probability::{mixing_probability, predicted_mode_probability};
 use crate::model::acceleration::{constant_acceleration, embedded_constant_velocity, position_matrix};
 use crate::number::Field;
-use nalgebra::{Matrix1, Matrix3, SMatrix, Vector3};
+use nalgebra::{Matrix3, SMatrix};
 
 /// (I − K H) F of the constant velocity filter with a damping root, in scaled coordinates — derbez2000 (7).
 ///
@@ -48,8 +49,8 @@ use nalgebra::{Matrix1, Matrix3, SMatrix, Vector3};
 ///
 /// Evidence: `each_filter_by_itself_is_stable` (symbolic).
 pub fn velocity_matrix<T: Field>(root: &T) -> Matrix3<T> {
-    let motion = embedded_constant_velocity(&T::one());
-    closed_loop(motion, &gains::alpha_beta_gain(root, &T::one()))
+    let gain = gains::alpha_beta_gain(root, &T::one());
+    closed_loop(&gain, &position_matrix(), &embedded_constant_velocity(&T::one()))
 }
 
 /// (I − K H) F of the constant acceleration filter with a damping root, in scaled coordinates.
@@ -72,18 +73,8 @@ pub fn velocity_matrix<T: Field>(root: &T) -> Matrix3<T> {
 ///
 /// Evidence: `each_filter_by_itself_is_stable` (symbolic).
 pub fn acceleration_matrix<T: Field>(root: &T) -> Matrix3<T> {
-    let motion = constant_acceleration(&T::one());
-    closed_loop(motion, &gains::alpha_beta_gamma_gain(root, &T::one()))
-}
-
-fn closed_loop<T: Field>(motion: Matrix3<T>, gain: &Vector3<T>) -> Matrix3<T> {
-    let filter = Riccati {
-        transition: motion,
-        measurement: position_matrix(),
-        noise: Matrix3::zeros(),
-        measurement_noise: Matrix1::new(T::one()),
-    };
-    filter.closed_loop(gain)
+    let gain = gains::alpha_beta_gamma_gain(root, &T::one());
+    closed_loop(&gain, &position_matrix(), &constant_acceleration(&T::one()))
 }
 
 /// The matrix of remark 1, Mⱼ = Σᵢ μᵢ∣ⱼ Aᵢ: what the paper's criterion looks at.
@@ -156,6 +147,13 @@ pub fn frozen_matrix<T: Field, const N: usize>(mixing: &[Vec<T>], matrices: &[SM
         (0..matrices.len() * N).map(entry).collect()
     };
     (0..matrices.len() * N).map(row).collect()
+}
+
+/// The mixing probabilities μᵢ∣ⱼ of two modes as `[j][i]`, and the predicted mode probabilities, both by (3).
+pub(super) fn mixing<T: Field>(chain: &[Vec<T>], probabilities: &[T; 2]) -> (Vec<Vec<T>>, [T; 2]) {
+    let predicted = [0, 1].map(|j| predicted_mode_probability(chain, probabilities, j));
+    let row = |j: usize| [0, 1].map(|i| mixing_probability(chain, probabilities, &predicted[j], i, j));
+    ((0..2).map(|j| row(j).to_vec()).collect(), predicted)
 }
 
 /// The product of matrices that a word names, the first letter acting first: A_{σₙ} ⋯ A_{σ₁}.

@@ -12,6 +12,7 @@
 //! | the spread of the means, from the filters' own errors | [`printed_spread_bound`]          | no bound; [`spread_bound`] is |
 //! | ε ≈ (1 − a)² for ε = (μ¹∣²)²                          | [`printed_weight`]                | right only at μ₁ = μ₂ = ½     |
 
+use super::riccati::closed_loop;
 use crate::imm::probability;
 use crate::number::Field;
 use nalgebra::{RowSVector, SMatrix, SVector};
@@ -94,7 +95,7 @@ impl<T: Field, const N: usize> Perturbation<T, N> {
     pub fn closed_loop(&self, epsilon: &T) -> SMatrix<T, N, N> {
         let moved = &self.predicted + self.predicted_change() * epsilon.clone();
         let gain = &moved * self.measurement.transpose() * (T::one() / self.innovation_variance(&moved));
-        (SMatrix::identity() - gain * &self.measurement) * &self.transition
+        closed_loop(&gain, &self.measurement, &self.transition)
     }
 
     /// The first-order term: dA/dε at ε = 0 — derbez2000 (perturbed-transition).

@@ -111,7 +111,7 @@ pub fn polynomial_text(coefficients: &[Rational]) -> String {
         if coefficient.is_zero() && coefficients.len() > 1 {
             continue;
         }
-        let is_negative = !coefficient.is_positive();
+        let is_negative = *coefficient < Rational::zero();
         let sign = match (text.is_empty(), is_negative) {
             (true, false) => "",
             (true, true) => "−",

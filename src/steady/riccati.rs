@@ -73,10 +73,13 @@ impl<T: Field, const N: usize, const M: usize> Riccati<T, N, M> {
     /// Evidence: `the_alpha_beta_gain_solves_the_riccati_equation` (symbolic).
     #[must_use]
     pub fn next(&self, predicted: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
-        let gain = self.gain(predicted);
+        kalman::predicted_covariance(&self.transition, &self.updated(predicted), &self.noise)
+    }
+
+    /// P − K S Kᵀ, the covariance after the update.
+    pub(super) fn updated(&self, predicted: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
         let innovation = kalman::innovation_covariance(&self.measurement, predicted, &self.measurement_noise);
-        let updated = update::updated_covariance(predicted, &gain, &innovation);
-        kalman::predicted_covariance(&self.transition, &updated, &self.noise)
+        update::updated_covariance(predicted, &self.gain(predicted), &innovation)
     }
 
     /// The gain at a predicted covariance, K = P Hᵀ (H P Hᵀ + R)⁻¹ — derbez2000 (2), (4).
@@ -131,8 +134,17 @@ impl<T: Field, const N: usize, const M: usize> Riccati<T, N, M> {
     /// assert_eq!(filter.closed_loop(&gain), carried);
     /// ```
     pub fn closed_loop(&self, gain: &SMatrix<T, N, M>) -> SMatrix<T, N, N> {
-        (SMatrix::identity() - gain * &self.measurement) * &self.transition
+        closed_loop(gain, &self.measurement, &self.transition)
     }
+}
+
+/// (I − K H) F.
+pub(super) fn closed_loop<T: Field, const N: usize, const M: usize>(
+    gain: &SMatrix<T, N, M>,
+    measurement: &SMatrix<T, M, N>,
+    transition: &SMatrix<T, N, N>,
+) -> SMatrix<T, N, N> {
+    (SMatrix::identity() - gain * measurement) * transition
 }
 
 impl<T: Field + PartialOrd, const N: usize, const M: usize> Riccati<T, N, M> {
@@ -366,9 +378,7 @@ impl<const N: usize> SteadyState<N> {
         let apart = |i: usize| self.upper[(i, i)].clone() - self.lower[(i, i)].clone();
         // The greater diagonal entry bounds the root of the product.
         let radius = if apart(i) > apart(j) { apart(i) } else { apart(j) };
-        // A double above it; a double below the least normal one would be rounded without a bound.
-        let radius = (radius.to_f64() * (1.0 + f64::EPSILON)).max(f64::MIN_POSITIVE);
-        Enclosure::rational(&self.lower[(i, j)]) + Enclosure::around(0.0, radius)
+        Enclosure::rational(&self.lower[(i, j)]) + Enclosure::rational(&radius) * Enclosure::around(0.0, 1.0)
     }
 
     /// The steady gain, at the precision of the scope.
@@ -396,7 +406,7 @@ impl<const N: usize> SteadyState<N> {
 }
 
 /// Enough doublings for a closed loop whose spectral radius differs from one by more than a millionth: 2³⁰ steps of the recursion.
-const DOUBLINGS: usize = 30;
+pub(super) const DOUBLINGS: usize = 30;
 
 fn check<const N: usize>(inequality: &'static str, matrix: &SMatrix<Rational, N, N>) -> Result<(), NoSteadyState> {
     check_positive_definite(&ldl(matrix)).map_err(|pivot| NoSteadyState::Inequality { inequality, pivot })

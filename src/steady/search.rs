@@ -16,7 +16,7 @@ const TRIANGLE: [(usize, usize); UNKNOWNS] = [(0, 0), (1, 0), (1, 1), (2, 0), (2
 
 type Matrix = SMatrix<f64, 3, 3>;
 
-/// The spectral radius of a matrix, from the norm of its 2⁴⁰-th power.
+/// The spectral radius of a matrix, from the norm of its 2³⁹-th power.
 pub fn spectral_radius<const N: usize>(matrix: &SMatrix<f64, N, N>) -> f64 {
     let mut power = *matrix;
     let (mut logarithm, mut weight) = (0.0, 1.0);

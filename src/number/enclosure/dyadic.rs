@@ -193,14 +193,13 @@ impl Dyadic {
         if self.is_negative() && size > 0.0 { -size } else { size }
     }
 
-    /// The least double that is not below the number.
+    /// The least double that is not below a number that is not negative.
     pub(super) fn double_above(&self) -> f64 {
         let nearest = self.nearest_double();
         match Self::from_f64(nearest) {
             Some(double) if double.compare(self) == Ordering::Less => nearest.next_up(),
             Some(_) => nearest,
-            // Beyond all doubles, on the one side or on the other.
-            None if self.is_negative() => f64::MIN,
+            // Beyond all doubles.
             None => f64::INFINITY,
         }
     }
@@ -215,7 +214,8 @@ impl Dyadic {
             return None;
         }
         let digits = i64::from(digits.max(1));
-        // 10ᵏ ≤ |x| < 10ᵏ⁺¹: the logarithm 0.30103 · t is right within one below 2²⁴ · 10⁻⁷ + 1, and the loop moves it.
+        // The k with 10ᵏ ≤ |x| < 10ᵏ⁺¹, or one or two less, which the loop raises: 0.30103 is above log₁₀ 2 by less than 10⁻⁸, so that up to
+        // 2²⁴ the product is off by less than one, and one is taken away.
         let mut power = (self.top() - 1) * 30103 / 100_000 - 1;
         let (limit, mut whole);
         limit = BigUint::from(10_u8).pow(u32::try_from(digits).ok()?);

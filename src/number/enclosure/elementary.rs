@@ -60,7 +60,7 @@ pub(super) fn exp(x: &Ball, precision: i64) -> Option<Ball> {
     let upper = x.upper();
     if upper.top() > LARGEST_EXPONENT_OF_EXP {
         // eˣ < 2ˣ for x < 0, and x ≤ −2⁴⁰ here.
-        let vanishing = Ball::zero().widened(Bound::power(-(1 << (LARGEST_EXPONENT_OF_EXP - 1))));
+        let vanishing = Ball::zero().widened(Bound::power(-(1 << LARGEST_EXPONENT_OF_EXP)));
         return upper.is_negative().then_some(vanishing);
     }
     if x.middle.top() > LARGEST_EXPONENT_OF_EXP || x.radius.top() > LARGEST_EXPONENT_OF_EXP {
@@ -75,22 +75,22 @@ pub(super) fn exp(x: &Ball, precision: i64) -> Option<Ball> {
     value.error += 2 * reduced.rest.cut(extra).error;
     let turns = reduced.turns;
     let size = Dyadic::new(&value.value + value.error, turns - w).bound_above();
-    let moved = size.times(exponential_minus_one(x.radius));
+    let moved = size.times(exponential_minus_one(x.radius)?);
     let Fixed { value, error } = value;
     let radius = Bound::above(error.into(), turns - w).plus(moved);
     Ball::rounded(Dyadic::new(value, turns - w), radius, precision)
 }
 
-/// A bound of e^ρ − 1.
-fn exponential_minus_one(radius: Bound) -> Bound {
+/// A bound of e^ρ − 1; `None` if it would be beyond all exponents, which a radius below 2⁴⁰ is far from.
+fn exponential_minus_one(radius: Bound) -> Option<Bound> {
     if radius.top() <= 0 {
-        return radius.plus(radius.times(radius));
+        return Some(radius.plus(radius.times(radius)));
     }
-    // ⌈3ρ/2⌉, where ρ < 2⁴⁰.
+    // 3ρ/2, rounded up.
     let half = radius.shifted(-1);
     let exponent = Dyadic::zero().plus_bound(radius.plus(half));
     let exponent = exponent.fixed(0) + 1;
-    Bound::power(i64::try_from(exponent).unwrap_or(1 << 50))
+    Some(Bound::power(i64::try_from(exponent).ok()?))
 }
 
 /// The logarithm; `None` if the ball touches zero or negative numbers.

@@ -280,7 +280,7 @@ fn short_or_cut(mantissa: &BigInt, b: i64, v: i64) -> (BigInt, i64) {
     }
 }
 
-/// The double nearest to X · 2⁻ʷ, as a number of at most `places` bits after the point.
+/// A double, cut to at most `places` bits after the point, with as short a mantissa as it has; zero if it is not finite.
 pub(super) fn short(value: f64, places: i64) -> Dyadic {
     let Some(mut number) = Dyadic::from_f64(value) else {
         return Dyadic::zero();
