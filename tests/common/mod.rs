@@ -2,6 +2,8 @@
 
 #![allow(dead_code, reason = "each test file uses its own part of this one")]
 
+pub mod program;
+
 use immaculate::filter::fixed_gain::FixedGain;
 use immaculate::gaussian::Gaussian;
 use immaculate::imm::{Equations, Failure, Imm, Initial, InvalidProblem, Problem, Step};
