@@ -219,10 +219,7 @@ impl Simulation for Scenario {
 
     /// All contestants on one run's draw, or each on a draw of its own when the scenario is not paired.
     fn one_run(&self, run: usize, seed: u64) -> Vec<Run> {
-        let draw = |stream: usize| {
-            let stream = u64::try_from(stream).unwrap_or(u64::MAX);
-            self.draw(&mut Generator::new(seed, stream))
-        };
+        let draw = |stream: usize| self.draw(&mut Generator::of_run(seed, stream));
         let count = self.contestants.len();
         if self.paired {
             let shared = draw(run);
@@ -240,7 +237,7 @@ impl Simulation for Scenario {
         if !self.paired {
             return None;
         }
-        let draw = self.draw(&mut Generator::new(seed, 0));
+        let draw = self.draw(&mut Generator::of_run(seed, 0));
         let sensor = match &self.measurement {
             Measurement::Polar { sensor, .. } => Some(*sensor),
             _ => None,
