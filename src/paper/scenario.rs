@@ -3,8 +3,8 @@
 //! After this file the reader knows everything that the simulations of zhu2016 and liu2017 have in common: a schedule of motions, a draw
 //! of one run's truth, measurements and initial estimate, and contestants that all see the same draw.
 
+use super::comparison::Average;
 use super::monte_carlo::{Generator, Run, track};
-use super::result::Average;
 use super::simulation::{Filter, Path, Simulation};
 use super::specification::Choices;
 use crate::gaussian::Gaussian;

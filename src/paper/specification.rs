@@ -282,7 +282,7 @@ impl Choices {
         Ok(choices)
     }
 
-    /// The choices as `parameter=alternative`, or `as printed` where nothing is chosen.
+    /// The choices as `parameter=alternative`, or `defaults` where nothing is chosen.
     pub fn describe(&self) -> String {
         if self.0.is_empty() {
             return "defaults".to_owned();
