@@ -3,10 +3,13 @@
 //! Method: the program is run as a reader would run it, with its output in pipes. Kind of evidence: behaviour, by examples, good
 //! and bad; what the figures are worth is the other files' work.
 
+mod common;
+
+use common::program::{error_of, immaculate};
 use serde_json::Value;
 use std::io::Read;
 use std::path::PathBuf;
-use std::process::{Command, Output, Stdio};
+use std::process::{Output, Stdio};
 
 // What it is
 
@@ -645,13 +648,7 @@ fn a_full_disk_is_an_error() {
     assert!(error_of(&output).contains("standard output"), "{}", error_of(&output));
 }
 
-// Helpers
-
-fn immaculate(arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_immaculate"));
-    command.args(arguments);
-    command
-}
+// How the program is run
 
 fn run(arguments: &[&str]) -> Output {
     immaculate(arguments).output().unwrap()
@@ -682,10 +679,6 @@ fn refuses(arguments: &[&str], status: i32) -> String {
         "{arguments:?}: {complaint}"
     );
     complaint
-}
-
-fn error_of(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).unwrap()
 }
 
 fn list(value: &Value) -> &Vec<Value> {

@@ -4,6 +4,9 @@
 //! Method: the program is run as a reader would run it, with its output in pipes, and its output is held against the library and the
 //! published files. Kind of evidence: behaviour, by examples, good and bad. The command `check` has a file of its own.
 
+mod common;
+
+use common::program::{error_of, immaculate, names};
 use immaculate::imm::Quantity;
 use immaculate::oracle::case::{self, Case, Expected};
 use immaculate::oracle::csv;
@@ -13,7 +16,7 @@ use immaculate::oracle::variant::catalogue;
 use serde_json::{Value, json};
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Output, Stdio};
 
 // Help
 
@@ -504,7 +507,7 @@ fn the_answering_side_says_what_it_does_not_understand() {
     assert!(refuses(&["answer", "--plant", "no-such"], 2).contains("there is no variant `no-such`"));
     for line in ["hello\n", "{}\n", "[]\n"] {
         let output = run_with(&["answer"], line.as_bytes());
-        let complaint = String::from_utf8(output.stderr).unwrap();
+        let complaint = error_of(&output);
         assert_eq!(output.status.code(), Some(2), "{complaint}");
         assert!(
             complaint.starts_with("immaculate: ") && output.stdout.is_empty(),
@@ -535,12 +538,6 @@ fn parsed(text: &str) -> Value {
     serde_json::from_str(text).unwrap()
 }
 
-fn immaculate(arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_immaculate"));
-    command.args(arguments);
-    command
-}
-
 fn run(arguments: &[&str]) -> Output {
     run_with(arguments, b"")
 }
@@ -559,7 +556,7 @@ fn run_with(arguments: &[&str], input: &[u8]) -> Output {
 
 fn succeeds(arguments: &[&str]) -> String {
     let output = run(arguments);
-    let complaint = String::from_utf8(output.stderr).unwrap();
+    let complaint = error_of(&output);
     assert!(
         output.status.success() && complaint.is_empty(),
         "{arguments:?}: {complaint}"
@@ -574,7 +571,7 @@ fn json_of(arguments: &[&str]) -> Value {
 /// The complaint of a command that fails with this status: it writes nothing else, and it is no panic.
 fn refuses(arguments: &[&str], status: i32) -> String {
     let output = run(arguments);
-    let complaint = String::from_utf8(output.stderr).unwrap();
+    let complaint = error_of(&output);
     assert_eq!(output.status.code(), Some(status), "{arguments:?}: {complaint}");
     assert!(
         output.stdout.is_empty() && !complaint.contains("panicked"),
@@ -600,16 +597,6 @@ fn with_lock(name: &str, lock: &str) -> PathBuf {
     std::fs::create_dir_all(&folder).unwrap();
     std::fs::write(folder.join("lock.json"), lock).unwrap();
     folder
-}
-
-/// The names of the files of a folder, in order.
-fn names(folder: &Path) -> Vec<String> {
-    let entries = std::fs::read_dir(folder).unwrap();
-    let mut names: Vec<String> = entries
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
-    names.sort();
-    names
 }
 
 /// The values of a JSON value that are neither lists nor objects, in their order.

@@ -7,6 +7,9 @@
 
 #![cfg(target_os = "linux")]
 
+mod common;
+
+use common::program::{self, error_of, names};
 use immaculate::file;
 use immaculate::oracle::case;
 use std::io::{BufRead, BufReader, Read};
@@ -387,9 +390,10 @@ fn long_problem(steps: usize) -> String {
     serde_json::json!(problem).to_string()
 }
 
+/// The program with nothing to read.
 fn immaculate(arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_immaculate"));
-    command.args(arguments).stdin(Stdio::null());
+    let mut command = program::immaculate(arguments);
+    command.stdin(Stdio::null());
     command
 }
 
@@ -414,19 +418,6 @@ fn refuses(arguments: &[&str], status: i32) -> String {
     assert!(complaint.starts_with("immaculate: "), "{arguments:?}: {complaint}");
     assert!(!complaint.contains("panicked"), "{arguments:?}: {complaint}");
     complaint
-}
-
-fn error_of(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).unwrap()
-}
-
-fn names(folder: &Path) -> Vec<String> {
-    let entries = std::fs::read_dir(folder).unwrap();
-    let mut names: Vec<String> = entries
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
-    names.sort();
-    names
 }
 
 /// An empty directory of this test's own.

@@ -6,6 +6,9 @@
 
 #![cfg(target_os = "linux")]
 
+mod common;
+
+use common::program::{error_of, immaculate};
 use immaculate::oracle::case;
 use immaculate::oracle::problem::{FilterFile, ProblemFile};
 use immaculate::oracle::setup::Setup;
@@ -60,8 +63,7 @@ fn a_million_steps_take_no_more_memory_than_a_thousand() {
 /// Every problem is another, with a rule of its own or gains of its own: nothing of it is kept.
 #[test]
 fn answers_take_no_more_memory_after_thousands_of_problems() {
-    let mut answering = Command::new(env!("CARGO_BIN_EXE_immaculate"))
-        .arg("answer")
+    let mut answering = immaculate(&["answer"])
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .spawn()
@@ -155,10 +157,7 @@ fn more_runs_than_fit_are_refused() {
             "the judges of derbez2000",
         ),
     ] {
-        let output = Command::new(env!("CARGO_BIN_EXE_immaculate"))
-            .args(arguments)
-            .output()
-            .unwrap();
+        let output = immaculate(arguments).output().unwrap();
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
         assert!(
             error_of(&output).contains(words),
@@ -181,10 +180,7 @@ fn sentences_are_short_and_plain() {
         &["reproduce", "--set", &long],
         &["stability", "--interval", &long],
     ] {
-        let output = Command::new(env!("CARGO_BIN_EXE_immaculate"))
-            .args(arguments)
-            .output()
-            .unwrap();
+        let output = immaculate(arguments).output().unwrap();
         let complaint = error_of(&output);
         assert_eq!(output.status.code(), Some(2), "{complaint:.200}");
         assert!(
@@ -247,8 +243,4 @@ fn limited(script: &str, argument: &str) -> Output {
         .stdin(Stdio::null())
         .output()
         .unwrap()
-}
-
-fn error_of(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
 }

@@ -4,7 +4,8 @@
 //! program answers and not whether that is right; it is for people who compare it with the published tables, and with what stood
 //! there before. How long anything took is left out, and the figures of 20 runs are rough: `immaculate reproduce` has the rest.
 
-use immaculate::paper::result::{Performance, Quantity, Reproduction};
+use immaculate::paper::comparison::Quantity;
+use immaculate::paper::result::{Performance, Reproduction};
 use immaculate::paper::specification::Choices;
 use immaculate::paper::{Effort, Paper};
 use immaculate::report::reproduction::published_and_computed;

@@ -10,9 +10,11 @@
 use immaculate::gaussian::Gaussian;
 use immaculate::imm::{Failure, Step, cycle::Cause};
 use immaculate::paper::Paper;
+use immaculate::paper::comparison::{Average, Comparison, Quantity};
 use immaculate::paper::monte_carlo::{Generator, Run, run};
-use immaculate::paper::result::{Comparison, Quantity};
+use immaculate::paper::result::{Figure, Reproduction};
 use immaculate::paper::scenario::Scenario;
+use immaculate::paper::simulation::{Filter, Path, Simulation};
 use immaculate::paper::specification::Choices;
 use immaculate::statistics::Estimate;
 use immaculate::statistics::consistency::{bounds, nees, nis};
@@ -186,7 +188,7 @@ fn a_failed_run_is_named_and_left_out_of_the_errors() {
     // A difference needs both: runs 1 and 3 only.
     let difference = comparison.difference(0, 1, Quantity::X).value;
     assert_eq!(difference, 12.5_f64.sqrt() - 2.5_f64.sqrt());
-    let reproduction = immaculate::paper::result::Reproduction::new(&scenario, 3, 1, &runs);
+    let reproduction = Reproduction::new(&scenario, 3, 1, &runs);
     assert_eq!(reproduction.filters[0].completed_runs, 2);
     assert_eq!(reproduction.filters[0].failures[0].run, 2);
     let sentence = &reproduction.filters[0].failures[0].failure;
@@ -335,7 +337,7 @@ fn a_band_has_no_width_where_all_runs_agree() {
     scenario.schedule.truncate(2);
     scenario.contestants.truncate(1);
     let history = |runs: &[Vec<Run>]| {
-        let reproduction = immaculate::paper::result::Reproduction::new(&scenario, runs.len(), 1, runs);
+        let reproduction = Reproduction::new(&scenario, runs.len(), 1, runs);
         let filter = &reproduction.filters[0];
         let rmse = filter.rmse[0].clone();
         (
@@ -587,7 +589,321 @@ fn progress_is_told_once_a_run() {
     assert_eq!(told.into_inner(), 5);
 }
 
-// Helpers
+// A reproduction by hand
+
+/// Two filters along four steps of 2 s: straight, two steps of a turn, straight. The second has one mode.
+#[derive(Debug)]
+struct ByHand {
+    choices: Choices,
+    average: Average,
+}
+
+impl Simulation for ByHand {
+    fn paper(&self) -> &'static str {
+        "by hand"
+    }
+    fn choices(&self) -> &Choices {
+        &self.choices
+    }
+    fn runs(&self) -> usize {
+        7
+    }
+    fn times(&self) -> Vec<f64> {
+        vec![10.0, 12.0, 14.0, 16.0]
+    }
+    fn interval(&self) -> f64 {
+        2.0
+    }
+    fn motions(&self) -> Vec<&'static str> {
+        vec!["straight", "turn", "turn", "straight"]
+    }
+    fn average(&self) -> Average {
+        self.average
+    }
+    fn components(&self) -> (f64, f64) {
+        (4.0, 2.0)
+    }
+    fn filters(&self) -> Vec<Filter> {
+        let filter = |name: &str, modes: &[&str], points| Filter {
+            name: name.to_owned(),
+            modes: modes.iter().map(|mode| (*mode).to_owned()).collect(),
+            points,
+        };
+        vec![
+            filter("two", &["straight", "turn"], Some((33, 25))),
+            filter("one", &["straight"], None),
+        ]
+    }
+    fn one_run(&self, run: usize, _: u64) -> Vec<Run> {
+        let of_run = |first: Run, second: Run| vec![first, second];
+        let run_of = |error: Vector4<f64>, nees: [f64; 4], turn: &[f64], fit: f64, microseconds: u64| Run {
+            errors: vec![error; 4],
+            nees: nees.to_vec(),
+            nis: vec![2.0, 0.1, 2.0, 7.0],
+            mode_probabilities: turn.iter().map(|p| vec![1.0 - p, *p]).collect(),
+            fit_error: Some(fit),
+            failure: None,
+            time: Duration::from_micros(microseconds),
+        };
+        let single = |error: Vector4<f64>, fit: f64| Run {
+            mode_probabilities: vec![vec![1.0]; 4],
+            ..run_of(error, [4.0; 4], &[], fit, 4)
+        };
+        match run {
+            // The turn is noticed a step late, its end at once.
+            0 => of_run(
+                run_of(
+                    vector![1.0, 3.0, 0.0, 4.0],
+                    [4.0, 4.0, 100.0, 4.0],
+                    &[0.25, 0.25, 0.75, 0.25],
+                    3.0,
+                    8,
+                ),
+                single(vector![3.0, 0.0, 4.0, 1.0], 1.0),
+            ),
+            // The turn at once, its end never.
+            _ => of_run(
+                run_of(
+                    vector![7.0_f64.sqrt(), 3.0, 0.0, 4.0],
+                    [2.0, 4.0, 4.0, 4.0],
+                    &[0.25, 0.75, 0.75, 0.75],
+                    5.0,
+                    16,
+                ),
+                single(vector![3.0, 0.0, 4.0, 1.0], 2.0),
+            ),
+        }
+    }
+    fn first_path(&self, seed: u64) -> Option<Path> {
+        let places = |x: f64| (0..4).map(|k| vector![x + f64::from(k), -f64::from(k)]).collect();
+        // A seed of its own, to see that it arrives.
+        Some(Path {
+            truth: places(100.0),
+            measured: places(seed as f64),
+            sensor: Some([5.0, 6.0]),
+        })
+    }
+}
+
+fn by_hand(average: Average) -> Reproduction {
+    let simulation = ByHand {
+        choices: Choices::of("of", "hand"),
+        average,
+    };
+    let runs = run(&simulation, 2, 9, &|| ());
+    Reproduction::new(&simulation, 2, 9, &runs)
+}
+
+/// Exact: every figure but the bounds of χ², which have a test of their own.
+#[test]
+fn every_figure_of_a_reproduction_is_that_of_its_runs() {
+    let shown = by_hand(Average::RootMeanSquare);
+    assert_eq!((shown.paper, shown.runs, shown.steps, shown.seed), ("by hand", 2, 4, 9));
+    assert_eq!(
+        (shown.choices.describe(), &shown.times),
+        ("of=hand".to_owned(), &vec![10.0, 12.0, 14.0, 16.0])
+    );
+    assert_eq!(shown.motions, ["straight", "turn", "turn", "straight"]);
+    let [two, one] = &shown.filters[..] else {
+        panic!("two filters")
+    };
+    assert_eq!(
+        (&*two.name, two.modes.join(" "), two.points, two.effective_points),
+        ("two", "straight turn".into(), Some(33), Some(25))
+    );
+    assert_eq!(
+        (&*one.name, one.modes.join(" "), one.points, one.effective_points),
+        ("one", "straight".into(), None, None)
+    );
+    assert_eq!((two.completed_runs, two.failures.len()), (2, 0));
+    // Squares of x: 1 and 7, so 4 ± 3 and its root 2 ± ¾. Velocities are 5 in both runs.
+    let errors = |filter: &str| Quantity::ALL.map(|quantity| shown.error(filter, quantity).unwrap());
+    let sure = |value: f64| Estimate {
+        value,
+        standard_error: 0.0,
+    };
+    let x = Estimate {
+        value: 2.0,
+        standard_error: 0.75,
+    };
+    assert_near(&errors("two"), &[x, sure(3.0), sure(0.0), sure(4.0), x, sure(5.0)]);
+    assert_near(&errors("one"), &[3.0, 0.0, 4.0, 1.0, 5.0, 1.0].map(sure));
+    for (history, error) in two.rmse.iter().zip(errors("two")) {
+        let step = |k: usize| Estimate {
+            value: history.values[k],
+            standard_error: history.standard_errors[k],
+        };
+        assert_near(&[0, 1, 2, 3].map(step), &[error; 4]);
+    }
+    assert_eq!(
+        two.rmse.iter().map(|history| history.quantity).collect::<Vec<_>>(),
+        Quantity::ALL
+    );
+    assert_eq!((two.rmse[0].values.len(), shown.error("three", Quantity::X)), (4, None));
+    // 3 and 5: 4 ± 1; 1 and 2: 1.5 ± ½; and of their differences, 2 and 3.
+    let estimate = |value: f64, standard_error: f64| Estimate { value, standard_error };
+    assert_near(
+        &[two.fit_error.unwrap(), one.fit_error.unwrap()],
+        &[estimate(4.0, 1.0), estimate(1.5, 0.5)],
+    );
+    let [difference] = &shown.fit_differences[..] else {
+        panic!("one pair")
+    };
+    assert_eq!((&*difference.filter, &*difference.minus), ("two", "one"));
+    assert_near(&[difference.estimate], &[estimate(2.5, 0.5)]);
+    let differences: Vec<_> = shown
+        .differences
+        .iter()
+        .map(|d| (&*d.filter, &*d.minus, d.quantity))
+        .collect();
+    assert_eq!(
+        differences,
+        [("two", "one", Quantity::Position), ("two", "one", Quantity::Velocity)]
+    );
+    assert_near(
+        &[shown.differences[0].estimate, shown.differences[1].estimate],
+        &[estimate(-3.0, 0.75), sure(4.0)],
+    );
+    // Quarters are exact in binary.
+    assert_eq!(
+        two.mode_probabilities,
+        [[0.75, 0.25], [0.5, 0.5], [0.25, 0.75], [0.5, 0.5]]
+    );
+    assert_eq!(
+        two.mode_probability_standard_errors,
+        [[0.0, 0.0], [0.25, 0.25], [0.0, 0.0], [0.25, 0.25]]
+    );
+    assert_eq!(one.mode_probabilities, [[1.0]; 4]);
+    // 24 µs in eight steps, 8 in eight.
+    assert!((two.microseconds_per_step - 3.0).abs() < 1e-12 && (one.microseconds_per_step - 1.0).abs() < 1e-12);
+}
+
+/// Exact: means of a run's four values, then over the runs; and how many steps are within the bounds of two runs.
+#[test]
+fn the_consistency_of_a_reproduction_is_that_of_its_runs() {
+    let two = &by_hand(Average::RootMeanSquare).filters[0];
+    // NEES: 28 and 3.5; the means at the steps are 3, 4, 52 and 4, and χ² of eight degrees is within 2.18 and 17.53.
+    assert_near(
+        &[two.nees.mean],
+        &[Estimate {
+            value: 15.75,
+            standard_error: 12.25,
+        }],
+    );
+    assert_eq!(
+        (two.nees.expected, two.nees.bounds, two.nees.inside),
+        (4.0, bounds(4.0, 2, 0.05), 0.75)
+    );
+    let [low, high] = [two.nees.bounds.0, two.nees.bounds.1].map(|bound| 2.0 * bound);
+    assert!(2.17 < low && low < 2.19 && 17.53 < high && high < 17.54);
+    // NIS: the same in both runs; χ² of four degrees is within 0.484 and 11.14, so that 0.1 and 7 are outside.
+    assert_near(
+        &[two.nis.mean],
+        &[Estimate {
+            value: 11.1 / 4.0,
+            standard_error: 0.0,
+        }],
+    );
+    assert_eq!(
+        (two.nis.expected, two.nis.bounds, two.nis.inside),
+        (2.0, bounds(2.0, 2, 0.05), 0.5)
+    );
+}
+
+/// Exact: delays are counted in steps and shown in seconds.
+#[test]
+fn the_delays_of_a_reproduction_are_those_of_its_runs() {
+    let shown = by_hand(Average::RootMeanSquare);
+    let delays: Vec<_> = shown.filters[0]
+        .delays
+        .iter()
+        .map(|d| (d.time, d.detected, d.mean, d.greatest))
+        .collect();
+    assert_eq!(delays, [(12.0, 2, 1.0, 2.0), (16.0, 1, 0.0, 0.0)]);
+    assert!(shown.filters[1].delays.is_empty(), "a filter of one mode has no turns");
+    let is_true = |mode: &str| [0, 1, 2, 3].map(|k| shown.is_true(mode, k));
+    assert_eq!(is_true("straight"), [true, false, false, true]);
+    assert_eq!(is_true("turn"), [false, true, true, false]);
+    let mut of_two_axes = shown;
+    of_two_axes.motions[0] = "x: straight, y: turn";
+    assert!(of_two_axes.is_true("y: turn", 0) && !of_two_axes.is_true("turn", 0));
+}
+
+/// Exact: a table asks for errors or for fit errors.
+#[test]
+fn a_figure_of_a_table_is_found_by_filter_and_by_what_it_is_of() {
+    let shown = by_hand(Average::Mean);
+    let value = |filter, figure| shown.figure(filter, figure).map(|estimate| estimate.value);
+    assert_eq!(value("one", Figure::FitError), Some(1.5));
+    assert_eq!(value("two", Figure::FitError), Some(4.0));
+    assert_eq!(value("three", Figure::FitError), None);
+    // RMSE is 2 at every step, and so is its mean.
+    assert!((value("two", Figure::Error(Quantity::X)).unwrap() - 2.0).abs() < 1e-15);
+    assert_eq!(value("one", Figure::Error(Quantity::Y)), Some(4.0));
+    assert_eq!(value("three", Figure::Error(Quantity::X)), None);
+    let labels = Quantity::ALL.map(Quantity::label);
+    assert_eq!(
+        labels,
+        [
+            "x (m)",
+            "x velocity (m/s)",
+            "y (m)",
+            "y velocity (m/s)",
+            "position (m)",
+            "velocity (m/s)"
+        ]
+    );
+}
+
+/// Exact: where no run came to its end, or the paper has no such measure, there is no fit error.
+#[test]
+fn a_fit_error_is_of_completed_runs_that_have_one() {
+    let simulation = ByHand {
+        choices: Choices::default(),
+        average: Average::RootMeanSquare,
+    };
+    let mut runs = run(&simulation, 2, 1, &|| ());
+    let figures = |runs: &[Vec<Run>]| {
+        let comparison = Comparison {
+            scenario: &simulation,
+            runs,
+        };
+        let value = |estimate: Option<Estimate>| estimate.map(|estimate| estimate.value);
+        (value(comparison.fit_error(0)), value(comparison.fit_difference(0, 1)))
+    };
+    assert_eq!(figures(&runs), (Some(4.0), Some(2.5)));
+    let failure = Failure {
+        step: 4,
+        mode: "turn".into(),
+        equation: "liu2017 (1)",
+        cause: Cause::MeasurementNotFinite,
+    };
+    runs[0][0].failure = Some(failure.clone());
+    assert_eq!(figures(&runs), (Some(5.0), Some(3.0)));
+    runs[1][1].failure = Some(failure.clone());
+    assert_eq!(figures(&runs), (Some(5.0), None));
+    runs[1][0].failure = Some(failure);
+    assert_eq!(figures(&runs), (None, None));
+    let mut runs = run(&simulation, 2, 1, &|| ());
+    runs[1][1].fit_error = None;
+    assert_eq!(figures(&runs), (Some(4.0), None));
+}
+
+/// Estimates that are the same but for some roundings.
+fn assert_near(found: &[Estimate], expected: &[Estimate]) {
+    assert_eq!(found.len(), expected.len());
+    for (found, expected) in found.iter().zip(expected) {
+        let near = |a: f64, b: f64| (a - b).abs() <= 1e-14 * b.abs().max(1.0);
+        assert!(near(found.value, expected.value), "{found:?} {expected:?}");
+        // The square of a root is off by a rounding, and the spread of two such squares is its size.
+        assert!(
+            near(found.standard_error, expected.standard_error),
+            "{found:?} {expected:?}"
+        );
+    }
+}
+
+// How the tests are written
 
 fn scenario_of(paper: Paper) -> Scenario {
     paper.scenario(&Choices::default()).unwrap()

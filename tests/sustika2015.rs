@@ -4,6 +4,9 @@
 //! probability of a false alarm; and journals that are cut at every byte, continued, exchanged and spoilt. Kind of evidence: property, and
 //! statistical where it is said. What the simulations show is `tests/scenario.rs` and the claims.
 
+// What is exact is compared exactly.
+#![allow(clippy::float_cmp)]
+
 use immaculate::gaussian::Gaussian;
 use immaculate::imm::{Equations, Imm, Initial, Problem};
 use immaculate::model::motion::Mode;
@@ -14,8 +17,9 @@ use immaculate::model::{Measurement, PolarComponent};
 use immaculate::paper::simulation::Simulation;
 use immaculate::paper::specification::{Choices, InvalidChoice};
 use immaculate::paper::sustika2015::contestants::Bearings;
+use immaculate::paper::sustika2015::divergence::{self, Tally};
 use immaculate::paper::sustika2015::journal::{BadJournal, Header, Journal, columns, line};
-use immaculate::paper::sustika2015::outcome::{Outcome, outcomes};
+use immaculate::paper::sustika2015::outcome::{Outcome, Track, outcomes};
 use immaculate::paper::sustika2015::scenario::Scenario;
 use immaculate::paper::sustika2015::sweep::{
     self, Fit, Parameter, Point, Setting, Sweep, Trajectory as Swept, settings,
@@ -31,6 +35,7 @@ use immaculate::statistics::estimate::mean;
 use immaculate::statistics::fit_error::{FitForm, position_fit_error};
 use nalgebra::{Matrix4, Matrix6, SMatrix, Vector2, Vector4, Vector6};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 
@@ -181,6 +186,8 @@ fn a_bearing_jumps_where_it_passes_the_negative_x_axis() {
     assert_eq!(bearing_jumps(&degrees(&[179.0, -179.0, 179.0])), 2);
     assert_eq!(bearing_jumps(&degrees(&[1.0, -1.0, 90.0, -89.0])), 0);
     assert_eq!(bearing_jumps(&degrees(&[5.0])), 0);
+    // Half a turn exactly may have been made either way.
+    assert_eq!(bearing_jumps(&[Vector2::new(1.0, 0.0), Vector2::new(1.0, PI)]), 0);
 }
 
 // The filters
@@ -411,6 +418,188 @@ fn every_form_of_the_fit_error_is_of_the_same_runs() {
     assert!(mean <= rms && rms < rss && rss <= sum && fit("joint-norm") < rss);
 }
 
+/// Exact, but for the order of sums: what is kept of a run is what its tracks are.
+#[test]
+fn an_outcome_is_what_the_run_of_each_filter_is() {
+    let scenario = of("matched-manoeuvring");
+    let filters = [
+        scenario.setup.converted(),
+        scenario.setup.unscented(Bearings::Wrapped),
+        scenario.setup.unscented(Bearings::Plain),
+    ];
+    // The filtered steps are 2 s to 200 s.
+    let manoeuvres = |k: usize| (51..=70).contains(&(k + 2)) || (121..=150).contains(&(k + 2));
+    for (run, outcome) in outcomes(&scenario, 5, 1, &|| ()).iter().enumerate() {
+        let draw = scenario.trajectory.draw(run, 1);
+        let tracks = filters.each_ref().map(|filter| scenario.track(filter, &draw));
+        assert_eq!(outcome.jumps, bearing_jumps(&draw.measurements) > 0);
+        let to_cut = |z: &Vector2<f64>| (PI - z[1]).min(PI + z[1]);
+        let least = draw.measurements.iter().map(to_cut).fold(PI, f64::min);
+        assert!((outcome.to_cut - least).abs() < 1e-15);
+        let apart = tracks[1].errors.iter().zip(&tracks[2].errors);
+        let greatest = apart.map(|(a, b)| (a[0] - b[0]).hypot(a[2] - b[2])).fold(0.0, f64::max);
+        assert!(
+            (outcome.apart - greatest).abs() <= 1e-14 * greatest,
+            "{} {greatest}",
+            outcome.apart
+        );
+        for (kept, track) in outcome.filters.iter().zip(&tracks) {
+            let kept = kept.as_ref().unwrap();
+            for (form, fit) in FitForm::ALL.into_iter().zip(kept.fits) {
+                let scenario = Scenario {
+                    fit_form: form,
+                    ..scenario.clone()
+                };
+                let contestant = filters
+                    .iter()
+                    .zip(&tracks)
+                    .find(|(_, other)| other.errors == track.errors)
+                    .unwrap()
+                    .0;
+                assert_eq!(scenario.track(contestant, &draw).fit_error, Some(fit));
+            }
+            for (kind, mean_square) in [false, true].into_iter().zip(kept.mean_squares) {
+                let squares = track.errors.iter().enumerate().filter(|(k, _)| manoeuvres(*k) == kind);
+                let squares: Vec<f64> = squares
+                    .map(|(_, error)| error[0] * error[0] + error[2] * error[2])
+                    .collect();
+                assert_eq!(squares.len(), if kind { 50 } else { 149 });
+                let expected = squares.iter().sum::<f64>() / squares.len() as f64;
+                assert!((mean_square / expected - 1.0).abs() < 1e-13);
+            }
+        }
+    }
+    // Without manoeuvres there is no error in them.
+    let straight = &outcomes(&of("matched-straight"), 1, 1, &|| ())[0];
+    let [rest, manoeuvres] = straight.filters[0].unwrap().mean_squares;
+    assert!(rest > 0.0 && manoeuvres.is_nan());
+}
+
+/// Exact: halves and whole numbers.
+#[test]
+fn the_figures_of_a_point_are_those_of_its_outcomes() {
+    let outcome = |jumps: bool, fits: [Option<f64>; 3]| Outcome {
+        jumps,
+        to_cut: 1.0,
+        filters: fits.map(|fit| {
+            fit.map(|fit| Track {
+                fits: [fit, 2.0 * fit, 0.0, 0.0, 0.0],
+                mean_squares: [1.0, 1.0],
+            })
+        }),
+        apart: 0.0,
+    };
+    let outcomes = [
+        outcome(true, [Some(1.0), Some(4.0), Some(20.0)]),
+        outcome(false, [Some(3.0), Some(4.0), Some(20.5)]),
+        outcome(true, [Some(8.0), None, Some(30.0)]),
+        outcome(true, [None, Some(10.0), Some(3.0)]),
+    ];
+    let point = Point::of(&outcomes, FitForm::RootSumSquare);
+    let [converted, wrapped, plain] = point.fits;
+    assert_eq!(point.runs_with_jump, 3);
+    // Of 1, 3 and 8 the one in the middle; of 3, 20, 20.5 and 30 the mean of the two there.
+    assert_eq!([converted.median, wrapped.median, plain.median], [3.0, 4.0, 20.25]);
+    assert_eq!(
+        [converted.mean.value, wrapped.mean.value, plain.mean.value],
+        [4.0, 6.0, 18.375]
+    );
+    assert_eq!([converted.failed, wrapped.failed, plain.failed], [1, 1, 0]);
+    // Twenty per cent is not more than twenty per cent.
+    assert_eq!([converted.divergent, wrapped.divergent, plain.divergent], [0, 0, 2]);
+    assert_eq!([converted.divergent_with_jump, plain.divergent_with_jump], [0, 1]);
+    // Where both came to the end: 4 − 1 and 4 − 3; 19, 17.5 and 22.
+    assert_eq!(
+        point.unscented_less_converted,
+        Estimate {
+            value: 2.0,
+            standard_error: 1.0
+        }
+    );
+    assert_eq!(point.plain_less_converted.value, 19.5);
+    // Another form is another list of figures; and of no runs there is no median.
+    assert_eq!(Point::of(&outcomes, FitForm::JointNorm).fits[0].median, 6.0);
+    assert!(Point::of(&[], FitForm::JointNorm).fits[0].median.is_nan());
+}
+
+#[test]
+fn a_tally_is_the_sum_of_its_points_and_says_what_they_say() {
+    let point = |divergent: [usize; 3], with_jump: [usize; 3]| Point {
+        fits: [0, 1, 2].map(|filter| Fit {
+            divergent: divergent[filter],
+            divergent_with_jump: with_jump[filter],
+            ..few_points()[0].fits[0]
+        }),
+        ..few_points()[0]
+    };
+    let points = [point([1, 2, 30], [1, 1, 29]), point([0, 3, 40], [0, 2, 40])];
+    let tally = Tally::of(points.iter(), 50);
+    assert_eq!(
+        tally,
+        Tally {
+            runs: 100,
+            divergent: [1, 5, 70],
+            divergent_with_jump: [1, 3, 69]
+        }
+    );
+    let all = "Of 100 runs each, 70 of the unscented filter diverge if its bearings are never wrapped, 69 of these in runs whose measured \
+               bearing jumps by more than π; 5 if they are, on the same measurements, and 1 of the converted filter. ";
+    assert_eq!(
+        tally.cause(),
+        format!(
+            "{all}The cause is the unwrapped azimuth, not the noises: both see the same and take the same noises for granted."
+        )
+    );
+    // A tenth is the limit, of wrapped filters that diverge and of runs without a jump.
+    for (wrapped, plain, with_jump, verdict) in [
+        (0, 0, 0, "None diverges, so nothing is said of a cause."),
+        (7, 70, 63, "The cause is the unwrapped azimuth, "),
+        (8, 70, 63, "The azimuth is one cause among others."),
+        (7, 70, 62, "The azimuth is one cause among others."),
+        (69, 70, 70, "The azimuth is one cause among others."),
+        (
+            70,
+            70,
+            70,
+            "The cause is not the azimuth: the wrapped filter diverges as often.",
+        ),
+        (
+            9,
+            1,
+            1,
+            "The cause is not the azimuth: the wrapped filter diverges as often.",
+        ),
+    ] {
+        let words = Tally {
+            runs: 1,
+            divergent: [0, wrapped, plain],
+            divergent_with_jump: [0, 0, with_jump],
+        }
+        .cause();
+        assert!(words.contains(&format!("converted filter. {verdict}")), "{words}");
+    }
+}
+
+#[test]
+fn what_makes_the_filter_diverge_is_asked_of_both_noises_and_both_windows() {
+    let rows = divergence::rows(2, 3, &|| ()).unwrap();
+    let found: Vec<(&str, &str)> = rows.iter().map(|row| (row.scenario, row.window)).collect();
+    let (matched, mismatched) = ("matched-manoeuvring", "mismatched-manoeuvring");
+    assert_eq!(
+        found,
+        [
+            (matched, "toolbox"),
+            (mismatched, "toolbox"),
+            (matched, "printed"),
+            (mismatched, "printed")
+        ]
+    );
+    for row in &rows {
+        let scenario = scenario(&Choices::of("scenario", row.scenario).with("window", row.window)).unwrap();
+        assert_eq!(row.point, sweep::point(&scenario, 2, 3, &|| ()));
+    }
+}
+
 // The sweep
 
 #[test]
@@ -602,6 +791,19 @@ fn the_journal_of_another_sweep_is_refused_by_name() {
 }
 
 #[test]
+fn what_was_chosen_may_have_any_words() {
+    let (path, settings) = (file("words"), few_settings());
+    let odd = Header {
+        choices: "a; runs 7; b".to_owned(),
+        ..header()
+    };
+    let (mut journal, _) = Journal::open(&path, &odd, &settings).unwrap();
+    journal.append(&settings[0], &few_points()[0]).unwrap();
+    drop(journal);
+    assert_eq!(Journal::open(&path, &odd, &settings).unwrap().1.len(), 1);
+}
+
+#[test]
 fn what_is_no_journal_is_refused_and_left_alone() {
     let (path, settings, points) = (file("spoilt"), few_settings(), few_points());
     write(&path, &settings, &points);
@@ -656,6 +858,37 @@ fn what_is_no_journal_is_refused_and_left_alone() {
         Journal::open(&nowhere, &header(), &settings),
         Err(BadJournal::File { .. })
     ));
+}
+
+/// Read by the names of its columns, as somebody else reads it: a difference is that of the two means that it names.
+#[test]
+fn a_column_of_the_journal_holds_what_it_is_called() {
+    let sweep = Sweep::new(&Choices::default(), 3, 1).unwrap();
+    let setting = Setting {
+        trajectory: Swept::Manoeuvring,
+        parameter: Parameter::BearingDegrees,
+        value: 4.0,
+    };
+    let (names, row) = (columns(), line(&setting, &sweep.point(&setting, &|| ())));
+    let fields: BTreeMap<&str, &str> = names.split(',').zip(row.split(',')).collect();
+    let value = |name: &str| fields[name].parse::<f64>().unwrap();
+    assert_eq!(
+        [fields["trajectory"], fields["parameter"], fields["value"]],
+        ["manoeuvring", "bearing-degrees", "4.0"]
+    );
+    let is_difference = |name: &&str| name.contains("_minus_") && !name.ends_with("_standard_error");
+    let differences: Vec<&str> = names.split(',').filter(is_difference).collect();
+    assert_eq!(differences.len(), 2);
+    for name in differences {
+        let (first, second) = name.split_once("_minus_").unwrap();
+        let of_means = value(&format!("{first}_mean")) - value(&format!("{second}_mean"));
+        // Means of some per cent over three runs: a few roundings.
+        assert!(
+            (value(name) - of_means).abs() < 1e-12,
+            "{name}: {} and {of_means}",
+            value(name)
+        );
+    }
 }
 
 #[test]

@@ -11,6 +11,7 @@
 //!
 //! Units: metres, seconds. With the coordinates scaled by D = diag(1, t, t²) every matrix here has t = 1.
 
+use super::motion::Mode;
 use crate::number::Field;
 use nalgebra::{Matrix3, RowVector3, Vector3};
 
@@ -188,6 +189,34 @@ pub fn embedded_velocity_response<T: Field>(interval: &T) -> Vector3<T> {
 /// Evidence: as [`embedded_velocity_response`] and [`acceleration_response`].
 pub fn response_noise<T: Field>(response: &Vector3<T>, variance: &T) -> Matrix3<T> {
     (response * response.transpose()) * variance.clone()
+}
+
+/// The two models as modes of one filter, constant velocity first, from the variances of their accelerations.
+///
+/// Source: derbez2000, sections 2.2 and 3.
+///
+/// Example: the same variance moves the acceleration of the second and not of the first, which has none.
+///
+/// ```
+/// use immaculate::model::acceleration::modes;
+///
+/// let [velocity, acceleration] = modes(&2.0, &[3.0, 3.0]);
+/// assert_eq!([&*velocity.name, &*acceleration.name], ["constant velocity", "constant acceleration"]);
+/// assert_eq!([velocity.noise[(2, 2)], acceleration.noise[(2, 2)]], [0.0, 3.0]);
+/// ```
+pub fn modes<T: Field>(interval: &T, [of_velocity, of_acceleration]: &[T; 2]) -> [Mode<T, 3>; 2] {
+    [
+        Mode {
+            name: "constant velocity".to_owned(),
+            transition: embedded_constant_velocity(interval),
+            noise: response_noise(&embedded_velocity_response(interval), of_velocity),
+        },
+        Mode {
+            name: "constant acceleration".to_owned(),
+            transition: constant_acceleration(interval),
+            noise: response_noise(&acceleration_response(interval), of_acceleration),
+        },
+    ]
 }
 
 /// The matrix of a measured position, H = [1 0 0].

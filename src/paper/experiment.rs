@@ -4,8 +4,8 @@
 //! answered from the same runs, so that two answers can be compared.
 
 use super::Effort;
+use super::comparison::Comparison;
 use super::monte_carlo::{Progress, Run, run};
-use super::result::Comparison;
 use super::scenario::Scenario;
 use super::simulation::Simulation;
 use crate::statistics::estimate::figure;

@@ -9,7 +9,8 @@
 //! - [`simulation`]: what can be run, and what the statistics ask about it;
 //! - [`scenario`]: a target that flies straight and turns, seen by a sensor, and the filters that compete on it;
 //! - [`monte_carlo`]: runs, on all cores, the same for any number of them;
-//! - [`result`]: what the runs show;
+//! - [`comparison`]: questions to the runs;
+//! - [`result`]: what the runs show, as a record;
 //! - [`experiment`]: a scenario together with its runs;
 //! - [`verdict`]: how a claim is judged.
 //!
@@ -24,6 +25,7 @@
 //! # Ok::<(), String>(())
 //! ```
 
+pub mod comparison;
 pub mod derbez2000;
 pub mod experiment;
 pub mod liu2017;
@@ -148,7 +150,7 @@ impl Paper {
     /// Example: zhu2016 is linear, so two of its filters are one: the same errors but for rounding, in two runs as in a hundred.
     ///
     /// ```
-    /// use immaculate::paper::result::Quantity;
+    /// use immaculate::paper::comparison::Quantity;
     /// use immaculate::paper::specification::Choices;
     /// use immaculate::paper::{Effort, Paper};
     ///

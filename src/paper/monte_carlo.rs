@@ -27,6 +27,12 @@ impl Generator {
         Self(generator)
     }
 
+    /// The stream of a run that has one, counted from 0.
+    pub fn of_run(seed: u64, run: usize) -> Self {
+        // No machine counts further than this.
+        Self::new(seed, u64::try_from(run).unwrap_or(u64::MAX))
+    }
+
     /// A number in (0, 1], uniform over the multiples of 2⁻⁵³.
     pub fn uniform(&mut self) -> f64 {
         const SPACING: f64 = 1.0 / (1_u64 << 53) as f64;
@@ -77,6 +83,21 @@ pub struct Run {
     pub time: Duration,
 }
 
+impl Run {
+    /// A run that has not begun, with room for so many steps.
+    pub fn with_room_for(steps: usize) -> Self {
+        Self {
+            errors: Vec::with_capacity(steps),
+            nees: Vec::with_capacity(steps),
+            nis: Vec::with_capacity(steps),
+            mode_probabilities: Vec::with_capacity(steps),
+            fit_error: None,
+            failure: None,
+            time: Duration::ZERO,
+        }
+    }
+}
+
 /// Runs a simulation; the result is `[run][filter]`.
 pub fn run(simulation: &dyn Simulation, runs: usize, seed: u64, progress: Progress) -> Vec<Vec<Run>> {
     (0..runs)
@@ -95,15 +116,7 @@ pub fn run(simulation: &dyn Simulation, runs: usize, seed: u64, progress: Progre
 ///
 /// When the contestant's problem is not valid: the papers' problems are part of the program, and a test runs all of them.
 pub fn track(contestant: &Contestant, draw: &Draw) -> Run {
-    let mut run = Run {
-        errors: Vec::with_capacity(draw.truth.len()),
-        nees: Vec::with_capacity(draw.truth.len()),
-        nis: Vec::with_capacity(draw.truth.len()),
-        mode_probabilities: Vec::with_capacity(draw.truth.len()),
-        fit_error: None,
-        failure: None,
-        time: Duration::ZERO,
-    };
+    let mut run = Run::with_room_for(draw.truth.len());
     let initial = Initial {
         modes: vec![draw.initial.clone(); contestant.problem.modes.len()],
         mode_probabilities: contestant.initial_probabilities.clone(),

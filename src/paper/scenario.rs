@@ -3,8 +3,8 @@
 //! After this file the reader knows everything that the simulations of zhu2016 and liu2017 have in common: a schedule of motions, a draw
 //! of one run's truth, measurements and initial estimate, and contestants that all see the same draw.
 
+use super::comparison::Average;
 use super::monte_carlo::{Generator, Run, track};
-use super::result::Average;
 use super::simulation::{Filter, Path, Simulation};
 use super::specification::Choices;
 use crate::gaussian::Gaussian;
@@ -219,10 +219,7 @@ impl Simulation for Scenario {
 
     /// All contestants on one run's draw, or each on a draw of its own when the scenario is not paired.
     fn one_run(&self, run: usize, seed: u64) -> Vec<Run> {
-        let draw = |stream: usize| {
-            let stream = u64::try_from(stream).unwrap_or(u64::MAX);
-            self.draw(&mut Generator::new(seed, stream))
-        };
+        let draw = |stream: usize| self.draw(&mut Generator::of_run(seed, stream));
         let count = self.contestants.len();
         if self.paired {
             let shared = draw(run);
@@ -240,7 +237,7 @@ impl Simulation for Scenario {
         if !self.paired {
             return None;
         }
-        let draw = self.draw(&mut Generator::new(seed, 0));
+        let draw = self.draw(&mut Generator::of_run(seed, 0));
         let sensor = match &self.measurement {
             Measurement::Polar { sensor, .. } => Some(*sensor),
             _ => None,

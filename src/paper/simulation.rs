@@ -4,8 +4,8 @@
 //! does when, and a run whose result depends on its number and the seed alone. [`Scenario`](super::scenario::Scenario) is the one that
 //! two papers share; a paper that is unlike them brings its own.
 
+use super::comparison::Average;
 use super::monte_carlo::Run;
-use super::result::Average;
 use super::specification::Choices;
 use nalgebra::Vector2;
 use std::fmt::Debug;

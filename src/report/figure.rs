@@ -8,7 +8,8 @@ use super::chart::{
     Area, Axis, Caption, Drawn, Key, Line, Look, NotDrawn, draw_lines, figure, looks, panel, stretches,
 };
 use crate::paper::Paper;
-use crate::paper::result::{Performance, Quantity, Reproduction};
+use crate::paper::comparison::Quantity;
+use crate::paper::result::{Performance, Reproduction};
 use crate::statistics::estimate::figure as digits;
 use std::fmt::Write;
 

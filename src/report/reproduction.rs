@@ -5,7 +5,8 @@
 
 use super::{citation, fit_error, indent_of, standard_errors, table, wrapped};
 use crate::paper::Paper;
-use crate::paper::result::{Consistency, ErrorFigure, Figure, FirstRun, Performance, Quantity, Reproduction};
+use crate::paper::comparison::Quantity;
+use crate::paper::result::{Consistency, ErrorFigure, Figure, FirstRun, Performance, Reproduction};
 use crate::paper::specification::{Choices, Specification, Table};
 use crate::statistics::Estimate;
 use crate::statistics::estimate::figure;

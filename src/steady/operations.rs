@@ -13,10 +13,7 @@ use crate::filter::{kalman, update};
 use crate::gaussian::Gaussian;
 use crate::imm::{Equations, Imm, Initial, Problem};
 use crate::matrix::ldl;
-use crate::model::acceleration::{
-    acceleration_response, constant_acceleration, embedded_constant_velocity, embedded_velocity_response,
-    position_matrix, response_noise,
-};
+use crate::model::acceleration::{self, position_matrix};
 use crate::model::{Measurement, motion::Mode};
 use crate::number::{Convention, Counting, Field, Rational, Tally};
 use crate::steady::gains;
@@ -118,7 +115,7 @@ pub(crate) fn given<const R: usize, const C: usize>(
 
 /// One cycle of the Kalman filter of constant acceleration.
 fn kalman_cycle(form: Form, convention: Convention) -> Tally {
-    let mode = modes(convention).swap_remove(1);
+    let [_, mode] = modes(convention);
     let h = given(&position_matrix(), convention);
     let r = Matrix1::new(Counting::input(MEASUREMENT_VARIANCE, convention));
     let z = Vector1::new(Counting::input(7.0, convention));
@@ -159,7 +156,7 @@ fn identity(convention: Convention) -> Matrix3<Counting> {
 fn imm_cycle(convention: Convention, equations: &Table, fixed_gains: Option<Vec<FixedGain<Counting, 3, 1>>>) -> Tally {
     let number = |value: f64| Counting::input(value, convention);
     let problem = Problem {
-        modes: modes(convention),
+        modes: modes(convention).to_vec(),
         transition: vec![vec![number(0.95), number(0.05)], vec![number(0.05), number(0.95)]],
         measurement: Measurement::Linear(given(&position_matrix(), convention)),
         measurement_noise: Matrix1::new(number(MEASUREMENT_VARIANCE)),
@@ -211,25 +208,13 @@ pub(crate) fn shortened<const N: usize, const M: usize>(
     }
 }
 
-/// Constant velocity and constant acceleration.
-fn modes(convention: Convention) -> Vec<Mode<Counting, 3>> {
-    let mode = |name: &str, transition: &Matrix3<f64>, response: &Vector3<f64>| Mode {
-        name: name.to_owned(),
-        transition: given(transition, convention),
-        noise: given(&response_noise(response, &NOISE), convention),
-    };
-    vec![
-        mode(
-            "constant velocity",
-            &embedded_constant_velocity(&INTERVAL),
-            &embedded_velocity_response(&INTERVAL),
-        ),
-        mode(
-            "constant acceleration",
-            &constant_acceleration(&INTERVAL),
-            &acceleration_response(&INTERVAL),
-        ),
-    ]
+/// Constant velocity and constant acceleration, as inputs.
+fn modes(convention: Convention) -> [Mode<Counting, 3>; 2] {
+    acceleration::modes(&INTERVAL, &[NOISE; 2]).map(|mode| Mode {
+        name: mode.name,
+        transition: given(&mode.transition, convention),
+        noise: given(&mode.noise, convention),
+    })
 }
 
 /// Gains and innovation variances. The variances are known before the filter runs, so that ln|2πS| is computed once.

@@ -6,8 +6,8 @@
 use super::long_term::{Form, Setting, predict};
 use crate::gaussian::Gaussian;
 use crate::imm::{Equations, Failure, Imm, Initial, InvalidProblem, Problem};
-use crate::model::acceleration::{constant_acceleration, position_matrix};
-use crate::model::{Measurement, motion::Mode};
+use crate::model::Measurement;
+use crate::model::acceleration::{constant_acceleration, modes, position_matrix};
 use crate::number::Real;
 use nalgebra::{Matrix1, Matrix3, Vector1, Vector3};
 use rayon::prelude::*;
@@ -97,15 +97,8 @@ pub fn simulate(setting: &Setting, start: Start, mut noise: impl FnMut() -> f64)
 
 /// The problem of the IMM filter.
 fn imm_problem(setting: &Setting) -> Problem<f64, 3, 1> {
-    let (motions, noises) = (setting.motions(), setting.process_noises());
-    let names = ["constant velocity", "constant acceleration"];
-    let mode = |j: usize| Mode {
-        name: names[j].to_owned(),
-        transition: motions[j],
-        noise: noises[j],
-    };
     Problem {
-        modes: vec![mode(0), mode(1)],
+        modes: modes(&setting.interval, &setting.noises).to_vec(),
         transition: setting.chain(),
         measurement: Measurement::Linear(position_matrix()),
         measurement_noise: Matrix1::new(setting.measurement_variance),

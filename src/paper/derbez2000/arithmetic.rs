@@ -23,7 +23,7 @@ use std::fmt::Write;
 /// ```
 ///
 /// Evidence: `without_noise_in_the_gain_calculation_the_mismatched_error_is_not_bounded`.
-pub(super) fn constant_bounded_error(s: &Specification) -> Judgement {
+pub fn constant_bounded_error(s: &Specification) -> Judgement {
     let [root, interval, acceleration] = ["root", "t", "a"].map(RationalFunction::unknown);
     // Jury's conditions for a second-order filter are 0 < α, 0 < β and β < 4 − 2α; the last leaves 4θ.
     let gain = gains::alpha_beta_gain(&root, &interval);
@@ -76,7 +76,7 @@ fn mixing(of_first: i64, previous: usize, current: usize) -> Rational {
 }
 
 /// The spread of the means of two models, one of which is right and the other off by one, beside its printed bound.
-pub(super) fn moment_matching_bound(s: &Specification) -> Judgement {
+pub fn moment_matching_bound(s: &Specification) -> Judgement {
     let mut evidence = String::from(
         "One coordinate, p = 0.95, model 1 off by 1 and model 2 right, so that P^{e,1} = 1 and P^{e,2} = 0. Exact spread of the mixed \
          estimate of model 2, μ^{1|2} μ^{2|2}, and its printed bound Σᵢ μ^{i|2} Σ_{l≠i} (μ^{i|l})² P^{e,l}; the same with μ^{l|i}, by μ₁:",
@@ -106,7 +106,7 @@ pub(super) fn moment_matching_bound(s: &Specification) -> Judgement {
 }
 
 /// ε = (μ^{1|2})² over the probabilities of model 1.
-pub(super) fn moment_matching_size(s: &Specification) -> Judgement {
+pub fn moment_matching_size(s: &Specification) -> Judgement {
     let small = Rational::new(1, 20) * Rational::new(1, 20);
     let mut evidence = String::from("Exact, a = 0.95, (1 − a)² = 0.0025. ε = (μ^{1|2})² by μ₁:");
     let mut greatest = Rational::zero();
@@ -135,7 +135,7 @@ pub(super) fn moment_matching_size(s: &Specification) -> Judgement {
 }
 
 /// The published errors of table 1: x and y of IMM, fixed gain and CA.
-pub(super) fn published(s: &Specification) -> [[f64; 3]; 2] {
+pub fn published(s: &Specification) -> [[f64; 3]; 2] {
     let row = |name: &str| {
         let row = s.tables[0].rows.iter().find(|row| row.name == name);
         row.and_then(|row| <[f64; 3]>::try_from(&row.values[..]).ok())
@@ -186,7 +186,7 @@ fn overall(table: &Table, evidence: &mut String) -> bool {
 }
 
 /// The overall errors against their components.
-pub(super) fn table_arithmetic(s: &Specification) -> Judgement {
+pub fn table_arithmetic(s: &Specification) -> Judgement {
     let mut evidence =
         String::from("√(x² + y²), from the least and the greatest values that round to the printed ones:");
     let verdicts: Vec<bool> = s.tables.iter().map(|table| overall(table, &mut evidence)).collect();
@@ -199,7 +199,7 @@ pub(super) fn table_arithmetic(s: &Specification) -> Judgement {
 }
 
 /// The three places that give operations.
-pub(super) fn operation_counts(s: &Specification) -> Judgement {
+pub fn operation_counts(s: &Specification) -> Judgement {
     let of_table = s.tables[0].rows.iter().find(|row| row.name == "Cost/flops");
     let of_table: Vec<f64> = of_table.map(|row| row.values.clone()).unwrap_or_default();
     let as_in_the_table = |places: [u32; 3]| places.map(f64::from).as_slice() == of_table;
@@ -219,7 +219,7 @@ pub(super) fn operation_counts(s: &Specification) -> Judgement {
 }
 
 /// Nothing tests it.
-pub(super) fn nonlinear_filters(s: &Specification) -> Judgement {
+pub fn nonlinear_filters(s: &Specification) -> Judgement {
     let evidence = "The paper runs no such filter and names two of other papers, by convolution and by chaos expansion, of which it gives no \
                     equation: there is nothing to reproduce.";
     s.judgement(

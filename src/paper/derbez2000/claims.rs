@@ -11,9 +11,9 @@ use super::relative::{Relative, Tally, extremes, relative};
 use super::scenario::{Contestant, Coordinates, Scenario, Steps, follow};
 use super::{CLOSEST_POINT, arithmetic, long_term, scenario, search, stability};
 use crate::imm::Equations;
+use crate::paper::comparison::Quantity;
 use crate::paper::experiment::Experiment;
 use crate::paper::monte_carlo::Progress;
-use crate::paper::result::Quantity;
 use crate::paper::specification::{Choices, InvalidChoice, Specification, derbez2000 as specification};
 use crate::paper::verdict::{Judgement, Verdict};
 use crate::paper::{Effort, Paper};
@@ -34,11 +34,12 @@ const WITHOUT_SPREAD: usize = 4;
 pub type Runs = Experiment<Scenario>;
 
 /// What the judges ask about.
-struct Evidence {
+#[derive(Debug, Clone)]
+pub struct Evidence {
     /// Scenario 2 at its defaults, then under every alternative by itself.
-    manoeuvres: Vec<Runs>,
+    pub manoeuvres: Vec<Runs>,
     /// Scenario 1, likewise.
-    acceleration: Vec<Runs>,
+    pub acceleration: Vec<Runs>,
 }
 
 /// Judges every claim.
@@ -48,7 +49,7 @@ struct Evidence {
 /// [`InvalidChoice`] when the specification lacks an alternative that a judge asks for.
 pub fn judge(effort: Effort, progress: Progress) -> Result<Vec<Judgement>, InvalidChoice> {
     let s = specification();
-    let runs = evidence(effort, progress)?;
+    let runs = Evidence::new(effort, progress)?;
     let map = stability::map();
     Ok(vec![
         long_term::half_the_load(s),
@@ -80,24 +81,30 @@ pub fn judge(effort: Effort, progress: Progress) -> Result<Vec<Judgement>, Inval
     ])
 }
 
-/// Both scenarios at their defaults and under every alternative by itself.
-fn evidence(effort: Effort, progress: Progress) -> Result<Evidence, InvalidChoice> {
-    let paper = Paper::Derbez2000;
-    let of_simulation = |choices: &Choices| -> Result<Vec<Runs>, InvalidChoice> {
-        let mut all = vec![choices.clone()];
-        all.extend(paper.open_choices(choices));
+impl Evidence {
+    /// Runs both scenarios at their defaults and under every alternative by itself.
+    ///
+    /// # Errors
+    ///
+    /// [`InvalidChoice`] when the specification lacks an alternative that is asked for.
+    pub fn new(effort: Effort, progress: Progress) -> Result<Self, InvalidChoice> {
+        let paper = Paper::Derbez2000;
         let run = |choices: &Choices| {
             let mut scenario = scenario(choices)?;
             add_contestants(&mut scenario);
             Ok(Experiment::new(scenario, effort, progress))
         };
-        all.iter().map(run).collect()
-    };
-    let simulations = paper.simulations(&Choices::default());
-    Ok(Evidence {
-        manoeuvres: of_simulation(&simulations[0])?,
-        acceleration: of_simulation(&simulations[1])?,
-    })
+        let of_simulation = |choices: &Choices| -> Result<Vec<Runs>, InvalidChoice> {
+            let mut all = vec![choices.clone()];
+            all.extend(paper.open_choices(choices));
+            all.iter().map(run).collect()
+        };
+        let simulations = paper.simulations(&Choices::default());
+        Ok(Self {
+            manoeuvres: of_simulation(&simulations[0])?,
+            acceleration: of_simulation(&simulations[1])?,
+        })
+    }
 }
 
 /// The other reading of the fixed-gain filter, and an IMM filter that leaves the spread of the means out of its mixed covariances.
@@ -130,7 +137,8 @@ fn in_turn(motion: Motion) -> bool {
     motion == Motion::Turn
 }
 
-fn almost_as_well(s: &Specification, runs: &Evidence) -> Judgement {
+/// The fixed-gain filter beside the full one.
+pub fn almost_as_well(s: &Specification, runs: &Evidence) -> Judgement {
     let position = |other: usize| relative(&runs.manoeuvres, [other, IMM], Quantity::Position, any);
     let (chosen, other) = (position(FIXED_GAIN), position(OTHER_READING));
     // Almost as well: worse by less than a tenth.
@@ -183,7 +191,8 @@ fn spread_ratios(runs: &Runs, seed: u64) -> Vec<f64> {
     ratios
 }
 
-fn minor_covariance_changes(s: &Specification, runs: &Evidence, effort: Effort) -> Judgement {
+/// What the spread of the means adds to the mixed covariances, and what leaving it out costs.
+pub fn minor_covariance_changes(s: &Specification, runs: &Evidence, effort: Effort) -> Judgement {
     let mut evidence = String::from(
         "Spread of the means over the variance of the position that it is added to, full IMM at the defaults:",
     );
@@ -250,7 +259,8 @@ fn delays(runs: &Runs, contestant: usize) -> Vec<f64> {
     runs.runs.iter().map(of_run).collect()
 }
 
-fn sluggish_onset(s: &Specification, runs: &Evidence) -> Judgement {
+/// How late the fixed-gain filter notices a change of regime.
+pub fn sluggish_onset(s: &Specification, runs: &Evidence) -> Judgement {
     let mut evidence = String::from(
         "Scenario 2, mean delay of the true model over all changes of regime in x and y, a change that is never noticed counting with all \
          steps until the next; fixed gain less IMM, as a part of the latter:",
@@ -302,7 +312,12 @@ fn polar(contestant: &Contestant, factor: f64, variances: [f64; 2]) -> Contestan
     polar
 }
 
-fn cartesian_filtering(s: &Specification, effort: Effort, progress: Progress) -> Result<Judgement, InvalidChoice> {
+/// Filters of x and y beside filters of range and bearing.
+///
+/// # Errors
+///
+/// [`InvalidChoice`] when the specification lacks an alternative that is asked for.
+pub fn cartesian_filtering(s: &Specification, effort: Effort, progress: Progress) -> Result<Judgement, InvalidChoice> {
     let mut evidence = String::from(
         "Scenario 1, position error of x and y less that of range and bearing with the best of 13 noises of the bearing.",
     );
@@ -364,7 +379,8 @@ fn both_coordinates(scenario: Scenario) -> Scenario {
     }
 }
 
-fn equal_on_acceleration(s: &Specification, runs: &Evidence) -> Judgement {
+/// Scenario 1: all filters beside that of constant acceleration.
+pub fn equal_on_acceleration(s: &Specification, runs: &Evidence) -> Judgement {
     let mut evidence = String::from("Scenario 1, position error less that of CA, as a part of the latter.");
     let mut tally = Tally::default();
     for (name, filter) in [
@@ -387,7 +403,8 @@ fn equal_on_acceleration(s: &Specification, runs: &Evidence) -> Judgement {
     s.judgement("derbez2000-equal-on-acceleration", tally.verdict(), evidence)
 }
 
-fn thirty_per_cent(s: &Specification, runs: &Evidence) -> Judgement {
+/// The y-error of the fixed-gain filter beside that of constant acceleration.
+pub fn thirty_per_cent(s: &Specification, runs: &Evidence) -> Judgement {
     let [_, y] = published(s);
     // The printed figures are rounded in the third decimal.
     let greatest = 1.0 - (y[FIXED_GAIN] - 0.0005) / (y[CA] + 0.0005);
@@ -419,7 +436,8 @@ fn overall_gain(s: &Specification) -> f64 {
     row.map_or(f64::NAN, |row| 1.0 - row.values[FIXED_GAIN] / row.values[CA])
 }
 
-fn full_imm_much_better(s: &Specification, runs: &Evidence) -> Judgement {
+/// The full filter in the turn.
+pub fn full_imm_much_better(s: &Specification, runs: &Evidence) -> Judgement {
     let [x, y] = published(s);
     let mut evidence = format!(
         "Table 1 has IMM at {} and {}, fixed gain at {} and {}, in x and y. Scenario 2 in the turn, position error of IMM less the other's, \
@@ -437,7 +455,8 @@ fn full_imm_much_better(s: &Specification, runs: &Evidence) -> Judgement {
     s.judgement("derbez2000-full-imm-much-better", tally.verdict(), evidence)
 }
 
-fn third_set_supports(s: &Specification, runs: &Evidence) -> Judgement {
+/// Scenario 3, whose data were not published.
+pub fn third_set_supports(s: &Specification, runs: &Evidence) -> Judgement {
     let of_table = |name: &str| {
         let row = s.tables[1].rows.iter().find(|row| row.name == name);
         row.map_or(f64::NAN, |row| {

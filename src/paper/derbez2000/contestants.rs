@@ -16,11 +16,7 @@ use super::{INITIAL_PROBABILITIES, MEASUREMENT_VARIANCES, TRANSITION};
 use crate::filter::fixed_gain::FixedGain;
 use crate::imm::{Equations, Problem};
 use crate::model::Measurement;
-use crate::model::acceleration::{
-    acceleration_response, constant_acceleration, embedded_constant_velocity, embedded_velocity_response,
-    position_matrix, response_noise,
-};
-use crate::model::motion::Mode;
+use crate::model::acceleration::{modes, position_matrix};
 use crate::steady::gains;
 use nalgebra::{Matrix1, Vector2, Vector3};
 
@@ -132,25 +128,8 @@ impl Setup {
 
     /// Both modes of one coordinate, constant velocity first.
     fn problem(&self, measurement_variance: f64) -> Problem<f64, 3, 1> {
-        let mode = |name: &str, transition, response| Mode {
-            name: name.to_owned(),
-            transition,
-            noise: response_noise(&response, &self.noise_variance),
-        };
-        let t = &self.interval;
         Problem {
-            modes: vec![
-                mode(
-                    "constant velocity",
-                    embedded_constant_velocity(t),
-                    embedded_velocity_response(t),
-                ),
-                mode(
-                    "constant acceleration",
-                    constant_acceleration(t),
-                    acceleration_response(t),
-                ),
-            ],
+            modes: modes(&self.interval, &[self.noise_variance; 2]).to_vec(),
             transition: TRANSITION.iter().map(|row| row.to_vec()).collect(),
             measurement: Measurement::Linear(position_matrix()),
             measurement_noise: Matrix1::new(measurement_variance),

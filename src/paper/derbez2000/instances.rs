@@ -26,15 +26,13 @@ use crate::gaussian::{Gaussian, mixture_covariance};
 use crate::imm::{Equations, Imm, Initial, Problem};
 use crate::matrix::ldl;
 use crate::model::Measurement;
-use crate::model::acceleration::{
-    acceleration_response, constant_acceleration, embedded_constant_velocity, embedded_velocity_response,
-    position_matrix, response_noise,
-};
+use crate::model::acceleration::{constant_acceleration, modes, position_matrix};
 use crate::model::motion::Mode;
 use crate::number::{Enclosure, Field, Rational, Real};
 use crate::steady::gains;
 use crate::steady::polynomial::{has_radius_below, rows_of};
 use crate::steady::riccati::Riccati;
+use crate::steady::simulated::NotSimulated;
 use nalgebra::{Matrix1, Matrix3, RowVector3, Vector3};
 
 /// Two motions that a filter tells apart by nothing, whose mixed covariances grow without bound — derbez2000 (theorem).
@@ -152,30 +150,10 @@ pub fn identities<T: Field>(modes: i64) -> Initial<T, 3> {
 
 /// One coordinate's two modes with t = 1, from the squared noise of both and the measurement variance.
 fn coordinate<T: Field>(noise_variances: &[T; 2], measurement_variance: T) -> Problem<T, 3, 1> {
-    let t = T::one();
-    let mode = |name: &str, transition, response, variance: &T| Mode {
-        name: name.to_owned(),
-        transition,
-        noise: response_noise(&response, variance),
-    };
-    let [v, a] = noise_variances;
     let ratio =
         |value: f64| T::rational(&Rational::from_decimal(&value.to_string()).unwrap_or_else(Rational::undecided));
     Problem {
-        modes: vec![
-            mode(
-                "constant velocity",
-                embedded_constant_velocity(&t),
-                embedded_velocity_response(&t),
-                v,
-            ),
-            mode(
-                "constant acceleration",
-                constant_acceleration(&t),
-                acceleration_response(&t),
-                a,
-            ),
-        ],
+        modes: modes(&T::one(), noise_variances).to_vec(),
         transition: TRANSITION
             .iter()
             .map(|row| row.iter().map(|value| ratio(*value)).collect())
@@ -195,18 +173,16 @@ fn coordinate<T: Field>(noise_variances: &[T; 2], measurement_variance: T) -> Pr
 ///
 /// # Errors
 ///
-/// The [`Failure`](crate::imm::Failure) of a step, if the precision does not do.
+/// [`NotSimulated`], if the precision does not do.
 ///
 /// Evidence: `the_full_filter_comes_to_a_local_instability` (enclosed).
-pub fn gain_after_a_jump() -> Result<Vector3<Enclosure>, String> {
+pub fn gain_after_a_jump() -> Result<Vector3<Enclosure>, NotSimulated> {
     Enclosure::with_precision(256, || {
         let five = || Enclosure::integer(5);
         let problem = coordinate(&[five(), five()], Enclosure::ratio(1, 20));
-        let mut filter = Imm::new(problem, Equations::kalman(), &identities(2)).map_err(|error| error.to_string())?;
+        let mut filter = Imm::new(problem, Equations::kalman(), &identities(2))?;
         for z in [60, 60, 0] {
-            filter
-                .step(Some(&Matrix1::new(Enclosure::integer(z))))
-                .map_err(|error| error.to_string())?;
+            filter.step(Some(&Matrix1::new(Enclosure::integer(z))))?;
         }
         Ok(filter.current().gains[1].clone())
     })
@@ -263,12 +239,11 @@ pub fn fixed_gain_filter<T: Real>(
 ///
 /// # Errors
 ///
-/// A sentence, if the precision does not do.
+/// [`NotSimulated`], if the precision does not do.
 ///
 /// Evidence: `two_copies_that_see_the_same_data_part` (enclosed).
-pub fn distances_of_two_copies(steps: usize) -> Result<Vec<f64>, String> {
-    let bits = u32::try_from(24 * steps + 256).map_err(|error| error.to_string())?;
-    Enclosure::with_precision(bits, || {
+pub fn distances_of_two_copies(steps: u32) -> Result<Vec<f64>, NotSimulated> {
+    Enclosure::with_precision(24 * steps + 256, || {
         let copy = |apart: Enclosure| {
             let roots = [Enclosure::ratio(4, 5), Enclosure::ratio(1, 5)];
             let start = Vector3::new(
@@ -276,14 +251,13 @@ pub fn distances_of_two_copies(steps: usize) -> Result<Vec<f64>, String> {
                 Enclosure::integer(160),
                 Enclosure::integer(0),
             );
-            fixed_gain_filter(&roots, &start).map_err(|error| error.to_string())
+            fixed_gain_filter(&roots, &start)
         };
         let mut copies = [copy(Enclosure::integer(0))?, copy(Enclosure::ratio(1, 1000))?];
         let mut distances = Vec::new();
         for (n, z) in (1..=steps).zip([30, -120, -30, 120].into_iter().cycle()) {
             for copy in &mut copies {
-                copy.step(Some(&Matrix1::new(Enclosure::integer(z))))
-                    .map_err(|error| error.to_string())?;
+                copy.step(Some(&Matrix1::new(Enclosure::integer(z))))?;
             }
             if n % 100 == 0 {
                 let [first, second] = copies.each_ref().map(|copy| copy.current().combined.mean[0].clone());
@@ -303,20 +277,18 @@ pub fn distances_of_two_copies(steps: usize) -> Result<Vec<f64>, String> {
 ///
 /// # Errors
 ///
-/// A sentence, if a step cannot be computed.
+/// [`NotSimulated`], if a step cannot be computed.
 ///
 /// Evidence: `a_certified_filter_may_lock_into_the_wrong_mode` (property).
-pub fn locked_errors(steps: u32) -> Result<[Vector3<f64>; 2], String> {
+pub fn locked_errors(steps: u32) -> Result<[Vector3<f64>; 2], NotSimulated> {
     let mut errors = [Vector3::zeros(); 2];
     for (error, acceleration) in errors.iter_mut().zip([0.0, 20.0]) {
         let start = Vector3::new(0.0, 0.0, acceleration);
-        let mut filter = fixed_gain_filter(&[1.0 / 3.0, 0.5], &start).map_err(|error| error.to_string())?;
+        let mut filter = fixed_gain_filter(&[1.0 / 3.0, 0.5], &start)?;
         for n in 1..=steps {
             let n = f64::from(n);
             let truth = Vector3::new(10.0 * n * n, 20.0 * n, 20.0);
-            let step = filter
-                .step(Some(&Matrix1::new(truth[0])))
-                .map_err(|error| error.to_string())?;
+            let step = filter.step(Some(&Matrix1::new(truth[0])))?;
             *error = step.combined.mean - truth;
         }
     }

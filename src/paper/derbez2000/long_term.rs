@@ -19,7 +19,7 @@ use crate::steady::simulated::{Grid, POINTS, Start};
 use std::fmt::Write;
 
 /// Half the load of the CA Kalman filter.
-pub(super) fn half_the_load(s: &Specification) -> Judgement {
+pub fn half_the_load(s: &Specification) -> Judgement {
     let total = |filter, form, convention| 2 * cycle(filter, form, convention).total(convention);
     let mut evidence = String::from(
         "Operations of one cycle, both coordinates, counted by running the equations on numbers that count:",
@@ -68,7 +68,7 @@ pub(super) fn half_the_load(s: &Specification) -> Judgement {
 }
 
 /// The proposition and (7).
-pub(super) fn proposition(s: &Specification) -> Judgement {
+pub fn proposition(s: &Specification) -> Judgement {
     let [root, t, a, r] = ["theta", "t", "a", "R"].map(RationalFunction::unknown);
     let gain = gains::alpha_beta_gain(&root, &t);
     let missed = acceleration_response(&t) * a.clone();
@@ -103,7 +103,7 @@ pub(super) fn proposition(s: &Specification) -> Judgement {
 }
 
 /// The accuracy of steps 0 to 6, figures 1 and 2.
-pub(super) fn algorithm_accuracy(s: &Specification, effort: Effort) -> Judgement {
+pub fn algorithm_accuracy(s: &Specification, effort: Effort) -> Judgement {
     let noise = |point: usize| {
         let mut generator = Generator::new(effort.seed, point as u64);
         move || generator.standard_normal()

@@ -51,7 +51,7 @@ pub mod scenario;
 pub mod search;
 pub mod stability;
 
-use super::result::Quantity;
+use super::comparison::Quantity;
 use super::specification::{Choices, InvalidChoice, derbez2000 as specification};
 use crate::model::Conversion;
 use contestants::{Noise, Reading, Setup};

@@ -11,8 +11,8 @@ use crate::imm::{Equations, Failure, Imm, Initial, Problem, Step};
 use crate::model::Conversion;
 use crate::model::conversion::converted_position;
 use crate::number::Real;
+use crate::paper::comparison::Average;
 use crate::paper::monte_carlo::{Generator, Run};
-use crate::paper::result::Average;
 use crate::paper::simulation::{self, Filter, Simulation};
 use crate::paper::specification::Choices;
 use crate::statistics::consistency::{nees, nis};
@@ -92,8 +92,7 @@ impl Scenario {
 
     /// The measurements of a run.
     pub fn seen(&self, run: usize, seed: u64) -> Vec<Seen> {
-        let stream = u64::try_from(run).unwrap_or(u64::MAX);
-        self.draw(&mut Generator::new(seed, stream))
+        self.draw(&mut Generator::of_run(seed, run))
     }
 
     /// Whether a coordinate (0 for x, 1 for y) is accelerated in each step: what the constant acceleration model is right for.
@@ -192,15 +191,7 @@ fn mode_names(contestant: &Contestant) -> Vec<String> {
 
 /// One contestant on one run's measurements, to its end or to the first step that cannot be computed.
 pub fn track(scenario: &Scenario, contestant: &Contestant, seen: &[Seen]) -> Run {
-    let mut run = Run {
-        errors: Vec::with_capacity(seen.len()),
-        nees: Vec::with_capacity(seen.len()),
-        nis: Vec::with_capacity(seen.len()),
-        mode_probabilities: Vec::with_capacity(seen.len()),
-        fit_error: None,
-        failure: None,
-        time: Duration::ZERO,
-    };
+    let mut run = Run::with_room_for(seen.len());
     let mut keep = |steps: Steps, place: &Place| record(&mut run, contestant, steps, place);
     let (time, failure) = follow(scenario, contestant, seen, &mut keep);
     Run { failure, time, ..run }
@@ -226,12 +217,13 @@ pub fn follow(
         )
     });
     let mut time = Duration::ZERO;
-    for (place, seen) in scenario.path.places.iter().zip(seen) {
+    for ((place, seen), step) in scenario.path.places.iter().zip(seen).zip(1..) {
         let begin = Instant::now();
-        let step = both_steps(scenario, contestant, &mut filters, seen);
+        let outcome = both_steps(scenario, contestant, &mut filters, seen);
         time += begin.elapsed();
-        if let Err(failure) = step {
-            return (time, Some(failure));
+        if let Err(failure) = outcome {
+            // A filter that goes on as a new one counts its steps anew.
+            return (time, Some(Failure { step, ..failure }));
         }
         keep([filters[0].current(), filters[1].current()], place);
     }

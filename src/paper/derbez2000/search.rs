@@ -12,8 +12,8 @@ use super::{DEGREE, INITIAL_VARIANCE, PHASES, assembled};
 use crate::model::Conversion;
 use crate::number::Real;
 use crate::paper::Effort;
+use crate::paper::comparison::{Comparison, Quantity};
 use crate::paper::monte_carlo::{Generator, Progress, Run};
-use crate::paper::result::{Comparison, Quantity};
 use crate::paper::simulation::Simulation;
 use crate::paper::specification::{Choices, Specification};
 use crate::paper::verdict::{DECISIVE, Judgement, Verdict};
@@ -247,7 +247,7 @@ impl Configuration {
 const NOISE_BOUNDS: [[f64; 2]; 2] = [[2.0, 40.0], [1e-4, 100.0]];
 
 /// The judge of table 1.
-pub(super) fn table_1_reachable(s: &Specification, effort: Effort, progress: Progress) -> Judgement {
+pub fn table_1_reachable(s: &Specification, effort: Effort, progress: Progress) -> Judgement {
     let published = published(s);
     let mut evidence = String::new();
     let mut verdict = Verdict::NotReproducible;

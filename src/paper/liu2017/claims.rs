@@ -1,29 +1,28 @@
 //! The claims of liu2017, each with its judge.
 //!
 //! After this file the reader knows by how much the four filters of the paper differ, and what could have made its table. The claims are
-//! in `spec/liu2017/claims.toml`, in the same order; every judge computes its evidence and is called once in [`judge`].
+//! in `spec/liu2017/claims.toml`, in the same order; every judge computes its evidence and is called once in [`judge`]. Those that need no
+//! runs are in [`arithmetic`].
 
-use super::{BEARING_DEVIATION, RANGE_DEVIATION, quantity_of_row, scenario};
-use crate::filter::kalman;
-use crate::imm::Equations;
+use super::{BEARING_DEVIATION, arithmetic, quantity_of_row, scenario};
 use crate::imm::printed::cubature_with_likelihood_21;
-use crate::model::Measurement;
+use crate::imm::{Equations, Problem};
+use crate::model::{Conversion, Measurement, PolarComponent};
 use crate::number::{Field, Rational, RationalFunction, Surd};
 use crate::paper::Effort;
+use crate::paper::comparison::Quantity;
 use crate::paper::experiment::Experiment;
-use crate::paper::monte_carlo::{Generator, Progress, run, track};
-use crate::paper::result::Quantity;
-use crate::paper::scenario::{Contestant, Draw, Motion, Scenario};
+use crate::paper::monte_carlo::{Progress, run};
+use crate::paper::scenario::{Contestant, Motion, Scenario};
 use crate::paper::specification::{Choices, InvalidChoice, Specification, liu2017 as specification};
 use crate::paper::verdict::{
     Judgement, RELEVANT, Verdict, all_of, better_by_a_thousandth, confirmed_if, in_words, proven_if,
 };
-use crate::rule::moment::{exactness, gaussian_moment, rule_moment};
-use crate::rule::sphere::{every_dimension, on_simplex};
+use crate::rule::moment::{gaussian_moment, rule_moment};
+use crate::rule::sphere::every_dimension;
 use crate::rule::{RuleName, fifth_degree, simplex};
-use crate::statistics::estimate::{figure, paired_difference};
-use nalgebra::{Matrix2, Matrix4, Vector2, Vector4, matrix};
-use rayon::prelude::*;
+use crate::statistics::estimate::figure;
+use nalgebra::{Matrix4, Vector4};
 use std::fmt::Write;
 
 /// The positions of the contestants in the scenario.
@@ -48,13 +47,13 @@ pub fn judge(effort: Effort, progress: Progress) -> Result<Vec<Judgement>, Inval
         quicker_switching(s, &printed),
         fifth_degree_switching(s, &printed),
         no_divergence(s, &printed),
-        point_counts(s),
-        time_proportional_to_points(s),
-        slightly_cheaper(s),
-        degree_five(s),
+        arithmetic::point_counts(s),
+        arithmetic::time_proportional_to_points(s),
+        arithmetic::slightly_cheaper(s),
+        arithmetic::degree_five(s),
         higher_accuracy_than_fifth_degree(s, &printed),
         linear_imm_cannot(s, &printed, effort, progress),
-        cheaper_in_high_dimension(s),
+        arithmetic::cheaper_in_high_dimension(s),
         outperforms_in_manoeuvres(s, &printed),
         constant_velocity(s, &printed),
         table_1_gaps(s, &printed, effort, progress)?,
@@ -168,87 +167,6 @@ fn no_divergence(s: &Specification, printed: &Experiment) -> Judgement {
     s.judgement("liu2017-no-divergence", confirmed_if(bounded), evidence)
 }
 
-/// The numbers of points of the four rules in four dimensions, in the order of the table.
-fn counted_points() -> [usize; 4] {
-    let names = [
-        RuleName::Unscented(None),
-        RuleName::ThirdDegree,
-        RuleName::FifthDegree,
-        RuleName::Simplex,
-    ];
-    names.map(|name| name.exact(4).map_or(0, |rule| rule.points.len()))
-}
-
-/// The values of a row of the second table.
-fn table_2<'a>(s: &'a Specification, name: &str) -> &'a [f64] {
-    let row = s.tables[1].rows.iter().find(|row| row.name.starts_with(name));
-    row.map_or(&[], |row| &row.values)
-}
-
-fn point_counts(s: &Specification) -> Judgement {
-    let counted = counted_points();
-    let published = table_2(s, "Number of Points");
-    let counted_as_published: Vec<f64> = counted.iter().map(|points| *points as f64).collect();
-    let equal = counted_as_published == published;
-    let evidence = format!("Counted {counted:?}, published {published:?}.");
-    s.judgement("liu2017-point-counts", proven_if(equal), evidence)
-}
-
-fn time_proportional_to_points(s: &Specification) -> Judgement {
-    let (points, times) = (table_2(s, "Number of Points"), table_2(s, "Computational Time"));
-    let per_point: Vec<f64> = times.iter().zip(points).map(|(time, points)| time / points).collect();
-    let count = points.len() as f64;
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / count;
-    let (mean_points, mean_time) = (mean(points), mean(times));
-    let pairs = points.iter().zip(times);
-    let covariance: f64 = pairs.map(|(p, t)| (p - mean_points) * (t - mean_time)).sum();
-    let variance: f64 = points.iter().map(|p| (p - mean_points) * (p - mean_points)).sum();
-    let slope = covariance / variance;
-    let intercept = mean_time - slope * mean_points;
-    let greatest = per_point.iter().copied().fold(f64::MIN, f64::max);
-    let least = per_point.iter().copied().fold(f64::MAX, f64::min);
-    let evidence = format!(
-        "Published seconds a point: {per_point:.4?}, which differ by a factor {}. The straight line through the four is {} s + {} s a \
-         point: {:.0} % of the time of the filter with the most points does not depend on them.",
-        figure(greatest / least),
-        figure(intercept),
-        figure(slope),
-        100.0 * intercept / times.iter().copied().fold(f64::MIN, f64::max),
-    );
-    // Approximately proportional: within a fifth.
-    let verdict = proven_if(greatest / least < 1.2);
-    s.judgement("liu2017-time-proportional-to-points", verdict, evidence)
-}
-
-fn slightly_cheaper(s: &Specification) -> Judgement {
-    let fewer: Vec<usize> = (2..=10).filter(|&n| n * n + 3 * n + 3 < 2 * n * n + 1).collect();
-    let [_, _, fifth, simplex] = counted_points();
-    let times = table_2(s, "Computational Time");
-    let evidence = format!(
-        "n² + 3n + 3 < 2n² + 1 for n in {fewer:?} of 2 to 10, that is from n = 4 on. At n = 4 {simplex} points against {fifth}; but 8 of \
-         the {fifth} have weight zero there and could be left out, and then the simplex rule is the costlier one. Published seconds: {} \
-         against {}.",
-        times[3], times[2],
-    );
-    s.judgement(
-        "liu2017-slightly-cheaper",
-        proven_if(simplex < fifth && times[3] < times[2]),
-        evidence,
-    )
-}
-
-fn degree_five(s: &Specification) -> Judgement {
-    let n = every_dimension();
-    let degree = on_simplex(&n, &simplex::edge_weight(&n)).degree();
-    let failure = simplex::simplex(4).ok().and_then(|rule| exactness(&rule, 6).failure);
-    let evidence = format!(
-        "Symbolic, with the corrected weights and n unknown: the degree is {}. At n = 4 the first wrong moment is {}.",
-        degree.map_or("none".to_owned(), |degree| degree.to_string()),
-        failure.map_or("none".to_owned(), |failure| failure.to_string()),
-    );
-    s.judgement("liu2017-degree-five", proven_if(degree == Some(5)), evidence)
-}
-
 fn higher_accuracy_than_fifth_degree(s: &Specification, printed: &Experiment) -> Judgement {
     let monomials = [
         [6, 0, 0, 0],
@@ -284,71 +202,36 @@ fn higher_accuracy_than_fifth_degree(s: &Specification, printed: &Experiment) ->
     s.judgement("liu2017-higher-accuracy-than-fifth-degree", verdict, evidence)
 }
 
-/// The covariance of a position converted from a range and a bearing, to first order in their noise.
-///
-/// Source: Bar-Shalom, Li and Kirubarajan 2001, section 10.4.3: J R Jᵀ with the Jacobian J of (r cos θ, r sin θ) at the measurement.
-fn converted_covariance(position: &Vector2<f64>) -> Matrix2<f64> {
-    let range = position.norm();
-    let (cosine, sine) = (position[0] / range, position[1] / range);
-    let jacobian = matrix![cosine, -range * sine; sine, range * cosine];
-    let noise = Matrix2::from_diagonal(&Vector2::new(
-        RANGE_DEVIATION * RANGE_DEVIATION,
-        BEARING_DEVIATION * BEARING_DEVIATION,
-    ));
-    jacobian * noise * jacobian.transpose()
-}
-
 /// Kalman filters on converted measurements in the paper's modes: the noise of a measurement is that of its own conversion.
-fn converted_measurement_filter(contestant: &Contestant) -> Contestant {
-    let mut converted = contestant.clone();
-    "IMM with converted measurements".clone_into(&mut converted.name);
-    converted.problem.rule = None;
-    converted.points = None;
-    converted.problem.measurement = Measurement::Linear(matrix![1.0, 0.0, 0.0, 0.0; 0.0, 0.0, 1.0, 0.0]);
-    converted.equations = Equations {
-        innovation_covariance: |problem, _, now, j| {
-            let noise = now
-                .measurement
-                .as_ref()
-                .map_or(problem.measurement_noise, converted_covariance);
-            let h = problem.measurement.matrix();
-            kalman::innovation_covariance(&h, &now.predicted[j].covariance, &noise)
+fn with_converted_measurements(contestant: &Contestant) -> Contestant {
+    Contestant {
+        name: "IMM with converted measurements".to_owned(),
+        problem: Problem {
+            measurement: Measurement::Converted {
+                components: [PolarComponent::Range, PolarComponent::Bearing],
+                position: [0, 2],
+                sensor: [0.0, 0.0],
+                conversion: Conversion::Standard,
+            },
+            rule: None,
+            ..contestant.problem.clone()
         },
-        ..Equations::kalman()
-    };
-    converted
+        equations: Equations::converted(),
+        points: None,
+        ..contestant.clone()
+    }
 }
 
 fn linear_imm_cannot(s: &Specification, printed: &Experiment, effort: Effort, progress: Progress) -> Judgement {
-    let filter = converted_measurement_filter(&printed.scenario.contestants[IMM5THSSRCKF]);
-    let one_run = |run: usize| {
-        let stream = u64::try_from(run).unwrap_or(u64::MAX);
-        let draw = printed.scenario.draw(&mut Generator::new(effort.seed, stream));
-        let position = |z: &Vector2<f64>| Vector2::new(z[0] * libm::cos(z[1]), z[0] * libm::sin(z[1]));
-        let converted = Draw {
-            measurements: draw.measurements.iter().map(position).collect(),
-            ..draw
-        };
-        progress();
-        track(&filter, &converted)
+    let proposed = &printed.scenario.contestants[IMM5THSSRCKF];
+    let both = Scenario {
+        contestants: vec![proposed.clone(), with_converted_measurements(proposed)],
+        ..printed.scenario.clone()
     };
-    let runs: Vec<_> = (0..printed.runs.len()).into_par_iter().map(one_run).collect();
-    let failed = runs.iter().filter(|run| run.failure.is_some()).count();
-    let mean_square = |errors: &[Vector4<f64>]| {
-        errors
-            .iter()
-            .map(|error| Quantity::Position.squared(error))
-            .sum::<f64>()
-            / errors.len() as f64
-    };
-    let converted: Vec<f64> = runs.iter().map(|run| mean_square(&run.errors)).collect();
-    let cubature: Vec<f64> = printed
-        .runs
-        .iter()
-        .map(|run| mean_square(&run[IMM5THSSRCKF].errors))
-        .collect();
-    let difference = paired_difference(&converted, &cubature);
-    let error = printed.comparison().error(IMM5THSSRCKF, Quantity::Position);
+    let both = Experiment::new(both, effort, progress);
+    let (comparison, failed) = (both.comparison(), both.failures(1));
+    let difference = comparison.difference(1, 0, Quantity::Position);
+    let error = comparison.error(0, Quantity::Position);
     let relative = difference.value / error.value;
     let evidence = format!(
         "Kalman filters on measurements converted to positions, with the same modes, chain and noise: position error minus that of \
@@ -363,21 +246,6 @@ fn linear_imm_cannot(s: &Specification, printed: &Experiment, effort: Effort, pr
         Verdict::Confirmed
     };
     s.judgement("liu2017-linear-imm-cannot", verdict, evidence)
-}
-
-fn cheaper_in_high_dimension(s: &Specification) -> Judgement {
-    let ratio = |n: i64| Rational::new(n * n + 3 * n + 3, 2 * n * n + 1);
-    let ratios: Vec<String> = [4, 8, 16, 64, 1024]
-        .into_iter()
-        .map(|n| format!("{n}: {}", figure(ratio(n).to_f64())))
-        .collect();
-    let falling = (4..1024).all(|n| ratio(n + 1) < ratio(n) && ratio(n) < Rational::new(1, 1));
-    let evidence = format!(
-        "Points of the simplex rule over those of the fifth-degree rule, n² + 3n + 3 over 2n² + 1, by n: {}. It falls from n = 4 on, \
-         towards one half; the third-degree rule, with 2n points, is cheaper than both.",
-        ratios.join(", "),
-    );
-    s.judgement("liu2017-cheaper-in-high-dimension", proven_if(falling), evidence)
 }
 
 fn outperforms_in_manoeuvres(s: &Specification, printed: &Experiment) -> Judgement {

@@ -30,14 +30,15 @@
 //!   [`Measurement::Polar`], [`TRANSITION`], [`scenario`]
 //! - 4.2 figures, table 1, (33), (34): [`root_mean_square`](crate::statistics::rmse::root_mean_square),
 //!   [`accumulated`](crate::statistics::rmse::accumulated), [`Reproduction`](super::result::Reproduction)
-//! - the claims: [`claims::judge`]
+//! - the claims: [`claims::judge`], those that need no runs in [`arithmetic`]
 //!
 //! The motion is linear, the measurement is range and bearing: only the update differs from a Kalman filter's, and by how much the four
 //! filters can differ from each other is a question of how curved the measurement is over the width of an estimate.
 
+pub mod arithmetic;
 pub mod claims;
 
-use super::result::{Average, Quantity};
+use super::comparison::{Average, Quantity};
 use super::scenario::{Contestant, Motion, Scenario};
 use super::specification::{Choices, InvalidChoice, liu2017 as specification};
 use crate::imm::printed::cubature_with_likelihood_21;

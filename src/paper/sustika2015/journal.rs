@@ -246,7 +246,7 @@ pub fn columns() -> String {
             let _ = write!(names, ",{filter}_{what}");
         }
     }
-    for difference in ["ukf_minus_cmkf", "plain_ukf_minus_ukf"] {
+    for difference in ["ukf_minus_cmkf", "plain_ukf_minus_cmkf"] {
         let _ = write!(names, ",{difference},{difference}_standard_error");
     }
     names

@@ -6,8 +6,8 @@
 use super::contestants::Bearings;
 use super::scenario::Scenario;
 use super::truth::{Draw, Motion, bearing_jumps};
+use crate::paper::comparison::Quantity;
 use crate::paper::monte_carlo::{Progress, Run};
-use crate::paper::result::Quantity;
 use crate::paper::simulation::Simulation;
 use crate::statistics::fit_error::FitForm;
 use rayon::prelude::*;

@@ -9,14 +9,13 @@ use super::truth::{Draw, Motion, Trajectory};
 use super::{DURATION, INTERVAL, RADAR, RUNS};
 use crate::imm::{Imm, Step};
 use crate::model::conversion::Conversion;
+use crate::paper::comparison::Average;
 use crate::paper::monte_carlo::{Run, follow};
-use crate::paper::result::Average;
 use crate::paper::simulation::{self, Filter, Simulation};
 use crate::paper::specification::Choices;
 use crate::statistics::consistency::{nees, nis};
 use crate::statistics::fit_error::{FitForm, position_fit_error};
 use nalgebra::{Vector2, Vector4, Vector6};
-use std::time::Duration;
 
 /// What the first measurement is used for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -59,15 +58,7 @@ impl Scenario {
     ///
     /// When the contestant's problem is not valid: the paper's problems are part of the program, and a test runs all of them.
     pub fn track(&self, contestant: &Contestant, draw: &Draw) -> Run {
-        let mut run = Run {
-            errors: Vec::with_capacity(DURATION),
-            nees: Vec::with_capacity(DURATION),
-            nis: Vec::with_capacity(DURATION),
-            mode_probabilities: Vec::with_capacity(DURATION),
-            fit_error: None,
-            failure: None,
-            time: Duration::ZERO,
-        };
+        let mut run = Run::with_room_for(DURATION);
         let initial = self.setup.initial(&draw.measurements[0]);
         let mut filter = Imm::new(contestant.problem.clone(), contestant.equations, &initial)
             .expect("the paper's problems are part of the program");

@@ -1,23 +1,25 @@
 //! The claims of zhu2016, each with its judge.
 //!
 //! After this file the reader knows what the paper's figures can and cannot mean. The claims are in `spec/zhu2016/claims.toml`, in the
-//! same order; every judge computes its evidence and is called once in [`judge`].
+//! same order; every judge computes its evidence and is called once in [`judge`]. Those that need no runs are in [`arithmetic`].
 
-use super::{quantity_of_row, scenario};
+use super::{arithmetic, quantity_of_row, scenario};
 use crate::imm::Equations;
 use crate::model::motion::coordinated_turn;
 use crate::number::Rational;
 use crate::paper::Effort;
+use crate::paper::comparison::{Comparison, Quantity};
 use crate::paper::experiment::Experiment;
 use crate::paper::monte_carlo::{Progress, run};
-use crate::paper::result::{Comparison, Quantity};
 use crate::paper::scenario::{Contestant, Motion, Scenario};
 use crate::paper::specification::{Choices, InvalidChoice, Specification, zhu2016 as specification};
 use crate::paper::verdict::{DECISIVE, Judgement, Verdict, all_below_zero, confirmed_if, in_words, proven_if};
 use crate::rule::sphere::{on_axes, on_axes_and_diagonals};
 use crate::rule::unscented::Parameters;
-use crate::rule::{ExactRule, Rule, RuleName, fifth_degree, third_degree, unscented};
+use crate::rule::{Rule, RuleName, fifth_degree, third_degree, unscented};
 use crate::statistics::estimate::figure;
+use crate::steady::gains;
+use crate::steady::mismatch::alpha_beta_lag;
 use nalgebra::Vector4;
 use std::fmt::Write;
 
@@ -67,23 +69,23 @@ pub fn judge(effort: Effort, progress: Progress) -> Result<Vec<Judgement>, Inval
         linear_accuracy(s, &printed),
         better_than_single_model(s, &single_models),
         better_than_omtm(s, &printed),
-        all_rmse_smaller(s),
+        arithmetic::all_rmse_smaller(s),
         captures_switches(s, &printed),
         switching_sensitivity(s, &printed),
         imm_beats_single_model(s, &single_models),
-        three_dimensions_equal(s),
+        arithmetic::three_dimensions_equal(s),
         negative_weights_diverge(s, &printed),
-        negative_weights_vanish(s),
-        equal_weights(s),
+        arithmetic::negative_weights_vanish(s),
+        arithmetic::equal_weights(s),
         no_divergence(s, &printed),
         single_model_worst(s, &single_models),
-        load(s),
+        arithmetic::load(s),
         nonlinear_filters_better_than_omtm(s, &printed),
         columns_differ(s, &printed),
         columns_differ_range_bearing(s, &range_bearing),
         table_1_reachable(s, &printed),
         printed_weight(s, &printed),
-        better_than_ckf(s),
+        arithmetic::better_than_ckf(s),
     ])
 }
 
@@ -157,27 +159,6 @@ fn better_than_omtm(s: &Specification, printed: &Experiment) -> Judgement {
     s.judgement("zhu2016-better-than-omtm", Verdict::NotReproducible, evidence)
 }
 
-fn all_rmse_smaller(s: &Specification) -> Judgement {
-    let rows = s.tables[0]
-        .rows
-        .iter()
-        .filter(|row| quantity_of_row(&row.name).is_some());
-    let mut exceptions = Vec::new();
-    for row in rows {
-        for (column, value) in s.tables[0].columns.iter().zip(&row.values).skip(1) {
-            if value <= &row.values[0] {
-                exceptions.push(format!("{} of {column}, {value} against {}", row.name, row.values[0]));
-            }
-        }
-    }
-    let verdict = proven_if(exceptions.is_empty());
-    let evidence = match verdict {
-        Verdict::Proven => "Every other figure of table 1 is larger.".to_owned(),
-        _ => format!("Table 1 itself has smaller figures: {}.", exceptions.join("; ")),
-    };
-    s.judgement("zhu2016-all-rmse-smaller", verdict, evidence)
-}
-
 fn captures_switches(s: &Specification, printed: &Experiment) -> Judgement {
     let comparison = printed.comparison();
     let delays = comparison.delays(IMM5CKF);
@@ -246,25 +227,6 @@ fn imm_beats_single_model(s: &Specification, experiments: &[Experiment; 3]) -> J
     s.judgement("zhu2016-imm-beats-single-model", verdict, evidence)
 }
 
-fn three_dimensions_equal(s: &Specification) -> Judgement {
-    let coincide = |n: usize| {
-        let unscented = unscented::unscented(n, &Parameters::for_gaussian(n));
-        let third = third_degree::third_degree(n);
-        let (Ok(unscented), Ok(third)) = (unscented, third) else {
-            return false;
-        };
-        unscented.weights[0] == Rational::new(0, 1)
-            && unscented.points[1..] == third.points
-            && unscented.weights[1..] == third.weights
-    };
-    let equal: Vec<usize> = (1..=10).filter(|&n| coincide(n)).collect();
-    let evidence = format!(
-        "Exact: with κ = 3 − n the centre has weight zero and the other points and weights are those of the third-degree rule for n in \
-         {equal:?}, and for no other n from 1 to 10.",
-    );
-    s.judgement("zhu2016-three-dimensions-equal", proven_if(equal == [3]), evidence)
-}
-
 fn negative_weights_diverge(s: &Specification, printed: &Experiment) -> Judgement {
     let negative: Vec<String> = (4..=8)
         .filter_map(|n| unscented::unscented(n, &Parameters::for_gaussian(n)).ok())
@@ -289,55 +251,6 @@ fn negative_weights_diverge(s: &Specification, printed: &Experiment) -> Judgemen
         confirmed_if(difference > AGREEMENT),
         evidence,
     )
-}
-
-fn negative_weights_vanish(s: &Specification) -> Judgement {
-    let dimensions = [4, 8, 16, 32, 64];
-    let zero = Rational::new(0, 1);
-    let mut evidence =
-        String::from("Exact, n: weight w₁, sum of the negative weights, Σ|w|, and Σ|w| of the unscented rule:");
-    let mut single = Vec::new();
-    let mut sums = Vec::new();
-    for n in dimensions {
-        let w1: Rational = fifth_degree::axis_weight(&Rational::new(n, 1));
-        let negative = Rational::new(2 * n, 1) * w1.clone();
-        let absolute = Rational::new(1, 1) - Rational::new(2, 1) * negative.clone();
-        let unscented = Rational::new(2 * n - 3, 3);
-        let _ = write!(
-            evidence,
-            " {n}: {}, {}, {}, {};",
-            figure(w1.to_f64()),
-            figure(negative.to_f64()),
-            figure(absolute.to_f64()),
-            figure(unscented.to_f64()),
-        );
-        single.push(w1);
-        sums.push(negative);
-    }
-    // n(4 − n)/(n + 2)² → −1 while (4 − n)/(2(n + 2)²) → 0.
-    let sums_grow = sums.windows(2).all(|pair| pair[1] < pair[0]) && sums[0] == zero;
-    evidence.push_str(
-        " each negative weight goes to zero like −1/(2n), but there are 2n of them: their sum n(4 − n)/(n + 2)² goes to −1 and Σ|w| to 3. \
-         Smaller than the unscented rule's (2n − 3)/3 for every n ≥ 4, so the comparison holds and its reason does not.",
-    );
-    s.judgement("zhu2016-negative-weights-vanish", proven_if(!sums_grow), evidence)
-}
-
-fn equal_weights(s: &Specification) -> Judgement {
-    let Ok(rule) = fifth_degree::fifth_degree(4) else {
-        return s.judgement("zhu2016-equal-weights", Verdict::Undecided, String::new());
-    };
-    let mut distinct: Vec<String> = rule.weights.iter().map(ToString::to_string).collect();
-    distinct.sort();
-    distinct.dedup();
-    let evidence = format!(
-        "Exact, n = 4: {} points, an odd number, with {} different weights, {}; {} points have a weight other than zero.",
-        rule.points.len(),
-        distinct.len(),
-        distinct.join(", "),
-        rule.effective_points(),
-    );
-    s.judgement("zhu2016-equal-weights", proven_if(distinct.len() == 1), evidence)
 }
 
 fn no_divergence(s: &Specification, printed: &Experiment) -> Judgement {
@@ -368,25 +281,6 @@ fn single_model_worst(s: &Specification, experiments: &[Experiment; 3]) -> Judge
     }
     evidence.push_str(" in the published table 5CKF is the worst in every row.");
     s.judgement("zhu2016-single-model-worst", all_below_zero(&differences), evidence)
-}
-
-fn load(s: &Specification) -> Judgement {
-    let count = |rule: Result<ExactRule, _>| rule.map_or((0, 0), |r: ExactRule| (r.points.len(), r.effective_points()));
-    let (points, effective) = count(fifth_degree::fifth_degree(4));
-    let (third, _) = count(third_degree::third_degree(4));
-    let Some(times) = s.tables[0].rows.iter().find(|row| row.name == "Time") else {
-        return s.judgement("zhu2016-load", Verdict::NotReproducible, String::new());
-    };
-    let ratio = times.values[0] / times.values[1];
-    let evidence = format!(
-        "{points} points, {effective} of a weight other than zero, against {third}: {} (or {}) times as many evaluations of the models, \
-         where the published seconds stand in the ratio {}. The load does increase; by how much depends on what does not depend on the \
-         points.",
-        figure(points as f64 / third as f64),
-        figure(effective as f64 / third as f64),
-        figure(ratio),
-    );
-    s.judgement("zhu2016-load", proven_if(effective > third && ratio > 1.0), evidence)
 }
 
 fn nonlinear_filters_better_than_omtm(s: &Specification, printed: &Experiment) -> Judgement {
@@ -517,15 +411,14 @@ fn table_1_reachable(s: &Specification, printed: &Experiment) -> Judgement {
 /// The greatest steady error of the single constant-velocity filter: the root of the measurement variance and of the squared lag under
 /// the centripetal acceleration of a turn, a = |v| ω.
 ///
-/// With the closed-form gains α, β of a piecewise constant acceleration: tracking index Λ = √(q/r) T², lag (1 − α) a T² / β.
+/// With the closed-form gains α, β of a piecewise constant acceleration the lag is (1 − α) a T² / β.
 fn steady_bound(variance: f64, acceleration_variance: f64) -> f64 {
-    let index = (acceleration_variance / variance).sqrt() * super::INTERVAL * super::INTERVAL;
-    let root = (index * index + 8.0 * index).sqrt();
-    let alpha = -(index * index + 8.0 * index - (index + 4.0) * root) / 8.0;
-    let beta = (index * index + 4.0 * index - index * root) / 4.0;
+    let interval = super::INTERVAL;
+    let index = gains::tracking_index(&acceleration_variance, &variance, &interval);
+    let gain = gains::alpha_beta_gain(&gains::alpha_beta_root(&index), &interval);
     let [_, vx, _, vy] = super::INITIAL_STATE;
     let acceleration = (vx * vx + vy * vy).sqrt() * super::TURN_RATE;
-    let lag = (1.0 - alpha) * acceleration * super::INTERVAL * super::INTERVAL / beta;
+    let lag = alpha_beta_lag(&gain, &acceleration, &interval)[0];
     (variance + lag * lag).sqrt()
 }
 
@@ -566,19 +459,4 @@ fn printed_weight(s: &Specification, printed: &Experiment) -> Judgement {
         proven_if(sum == Rational::new(1, 1)),
         evidence,
     )
-}
-
-fn better_than_ckf(s: &Specification) -> Judgement {
-    let columns = &s.tables[0].columns;
-    let evidence = format!(
-        "The filters that were run are {}; a single CKF is not among them.",
-        columns.join(", ")
-    );
-    let was_run = columns.iter().any(|column| column == "CKF");
-    let verdict = if was_run {
-        Verdict::Undecided
-    } else {
-        Verdict::NotReproducible
-    };
-    s.judgement("zhu2016-better-than-ckf", verdict, evidence)
 }

@@ -29,14 +29,15 @@
 //!   [`acceleration_noise`], [`TRANSITION`], [`scenario`]
 //! - 4 figures, table 1, (64): [`root_mean_square`](crate::statistics::rmse::root_mean_square),
 //!   [`Reproduction`](super::result::Reproduction)
-//! - the claims: [`claims::judge`]
+//! - the claims: [`claims::judge`], those that need no runs in [`arithmetic`]
 //!
 //! Motion and measurement are linear here. Any rule that is exact to degree two then *is* the Kalman filter, so that three of the five
 //! columns of the paper's table must be equal; they are not.
 
+pub mod arithmetic;
 pub mod claims;
 
-use super::result::{Average, Quantity};
+use super::comparison::{Average, Quantity};
 use super::scenario::{Contestant, Motion, Scenario};
 use super::specification::{Choices, InvalidChoice, zhu2016 as specification};
 use crate::imm::{Equations, Problem, diagonal_mixing};
