@@ -18,9 +18,10 @@ use immaculate::oracle::problem::FilterFile;
 use immaculate::oracle::subject::{Broken, Precision, Ready};
 use immaculate::oracle::trace::{Dimensions, Trace};
 use immaculate::oracle::variant::{self, Variant};
+use immaculate::paper::comparison::Quantity as Measured;
 use immaculate::paper::result::{
     Consistency, Delay, Difference, ErrorFigure, ErrorHistory, FailedRun, FirstRun, FitDifference, Performance,
-    Quantity as Measured, Reproduction,
+    Reproduction,
 };
 use immaculate::paper::specification::Choices;
 use immaculate::paper::sustika2015::divergence::Row;
