@@ -11,7 +11,7 @@
 use crate::filter::fixed_gain::FixedGain;
 use crate::gaussian::Gaussian;
 use crate::matrix::{all_finite, is_finite, is_positive_definite, is_positive_semidefinite, is_symmetric};
-use crate::model::{Measurement, PolarComponent, motion::Mode};
+use crate::model::{Measurement, motion::Mode};
 use crate::number::Real;
 use crate::rule::Rule;
 use nalgebra::SMatrix;
@@ -280,8 +280,7 @@ impl<T: Real, const N: usize, const M: usize> Problem<T, N, M> {
         if !self.measurement.is_converted() {
             return Ok(());
         }
-        let has = |wanted| (0..M).any(|row| self.measurement.reports(row) == Some(wanted));
-        if M != 2 || !has(PolarComponent::Range) || !has(PolarComponent::Bearing) {
+        if self.measurement.range_and_bearing().is_none() {
             return Err(InvalidProblem::NotRangeAndBearing);
         }
         if self.measurement_noise[(1, 0)].is_zero() {
