@@ -390,6 +390,14 @@ fn wrong_values() -> Vec<Defect> {
     let semidefinite = "is not positive semidefinite";
     vec![
         (
+        (
+            POLAR,
+            "/measurement/position",
+            json!([2, 2]),
+            shape,
+            "problem.measurement.position",
+            "names entry 2 twice",
+        ),
             LINEAR,
             "/format",
             json!("immaculate-problem/2"),

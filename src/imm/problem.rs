@@ -183,6 +183,12 @@ pub enum InvalidProblem {
         /// The dimension of the state.
         dimension: usize,
     },
+    /// Both coordinates of the position of a polar measurement are the same entry of the state.
+    #[error("`measurement.position` names entry {index} twice; range and bearing need an x and a y (liu2017 (31))")]
+    PositionTwice {
+        /// The entry, counted from 0.
+        index: usize,
+    },
 }
 
 impl<T: Real, const N: usize, const M: usize> Problem<T, N, M> {
@@ -264,6 +270,9 @@ impl<T: Real, const N: usize, const M: usize> Problem<T, N, M> {
                 self.check_conversion()?;
                 if let Some(&index) = position.iter().find(|&&index| index >= N) {
                     return Err(InvalidProblem::Position { index, dimension: N });
+                }
+                if position[0] == position[1] {
+                    return Err(InvalidProblem::PositionTwice { index: position[0] });
                 }
                 if sensor.iter().all(is_finite) {
                     return Ok(());
