@@ -45,7 +45,7 @@ enum Action {
     },
     /// Prove every number of the cases again, from nothing but the problems
     Verify(Select),
-    /// Print the JSON Schema of problem or trace files
+    /// Print the JSON Schema of problem, trace or certificate files
     Schema {
         /// Which
         #[arg(value_enum)]
@@ -64,6 +64,7 @@ enum Action {
 enum Format {
     Problem,
     Trace,
+    Certificate,
 }
 
 #[derive(Args)]
@@ -108,6 +109,9 @@ pub fn run(arguments: &Cases) -> Result<Done, Refusal> {
         Action::Verify(select) => verify(select),
         Action::Schema { of: Format::Problem } => Ok(json_text(&schema::of_problems()).into()),
         Action::Schema { of: Format::Trace } => Ok(json_text(&schema::of_traces()).into()),
+        Action::Schema {
+            of: Format::Certificate,
+        } => Ok(json_text(&schema::of_certificates()).into()),
         Action::Write { folder } => write(folder),
     }
 }
