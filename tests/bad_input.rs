@@ -387,6 +387,38 @@ fn the_measured_position_is_in_the_state() {
     );
 }
 
+/// A target on the diagonal x = y is not where any other is. A converted measurement has the same position.
+#[test]
+fn the_measured_position_has_two_coordinates() {
+    let twice = |index: usize| {
+        let mut scenes = [
+            polar_scene("cubature-5"),
+            converted_scene(Conversion::Standard, [0.0, 0.0]),
+        ];
+        for scene in &mut scenes {
+            if let Measurement::Polar { position, .. } | Measurement::Converted { position, .. } =
+                &mut scene.problem.measurement
+            {
+                *position = [index, index];
+            }
+        }
+        scenes
+    };
+    for scene in twice(0) {
+        assert_sentence(
+            &scene,
+            "`measurement.position` names entry 0 twice; range and bearing need an x and a y (liu2017 (31))",
+        );
+    }
+    // Of an entry that is not there it does not matter how often.
+    for scene in twice(9) {
+        assert_sentence(
+            &scene,
+            "`measurement.position` names entry 9 of a state of 4 (liu2017 (31))",
+        );
+    }
+}
+
 // Rules
 
 #[test]
@@ -1048,6 +1080,7 @@ fn problem_test(error: &InvalidProblem) -> &'static str {
             "a_conversion_needs_one_range_one_bearing_and_their_variances"
         }
         InvalidProblem::Position { .. } => "the_measured_position_is_in_the_state",
+        InvalidProblem::PositionTwice { .. } => "the_measured_position_has_two_coordinates",
     }
 }
 

@@ -74,6 +74,24 @@ fn every_equation_is_caught_by_a_case_or_says_why_none_can() {
     );
 }
 
+/// Who looks up an equation is told first what is done to it, and then what it may be given wrongly.
+#[test]
+fn mistakes_of_reading_come_after_those_of_the_equation() {
+    let has_both = |entry: &&Entry| {
+        [true, false]
+            .iter()
+            .all(|input| entry.mistakes.iter().any(|variant| variant.input == *input))
+    };
+    assert!(entries().iter().filter(has_both).count() > 10);
+    for entry in entries() {
+        assert!(
+            entry.mistakes.is_sorted_by_key(|variant| variant.input),
+            "{}",
+            entry.reference
+        );
+    }
+}
+
 #[test]
 fn every_mistake_of_the_catalogue_is_made_in_an_equation_of_a_paper() {
     let made: BTreeSet<&str> = entries()
@@ -140,7 +158,7 @@ fn the_mixed_covariance_has_everything() {
     );
     assert_eq!(entry.quantities, [Quantity::MixedCovariance]);
     let mistakes: Vec<&str> = entry.mistakes.iter().map(|variant| variant.id.as_str()).collect();
-    assert!(mistakes.contains(&"mixed-spread-omitted"), "{mistakes:?}");
+    assert_eq!(mistakes[0], "mixed-spread-omitted");
     // Of filters whose states have unequal dimensions, which zhu2016 has not.
     assert!(!mistakes.contains(&"unequal-dimensions-index-wise"), "{mistakes:?}");
     assert!(entry.cases().contains(&"mixing.two-modes"));

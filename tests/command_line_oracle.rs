@@ -385,12 +385,12 @@ fn verified_cases_are_counted() {
 /// Exact: what is printed is what is published.
 #[test]
 fn schemas_are_printed_as_they_are_published() {
-    for name in ["problem", "trace"] {
+    for name in ["problem", "trace", "certificate"] {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("spec/schemas/{name}.schema.json"));
         let published = std::fs::read_to_string(path).unwrap();
         assert_eq!(succeeds(&["cases", "schema", name]), published);
     }
-    assert!(refuses(&["cases", "schema", "answer"], 2).contains("[possible values: problem, trace]"));
+    assert!(refuses(&["cases", "schema", "answer"], 2).contains("[possible values: problem, trace, certificate]"));
 }
 
 // Writing cases

@@ -6,6 +6,7 @@
 //! tolerance but the cases' own.
 
 use immaculate::oracle::case::{self, BadCase, Case, Expected, LOCK, Lock};
+use immaculate::oracle::certificate::CertificateFile;
 use immaculate::oracle::certify::long_csv;
 use immaculate::oracle::csv;
 use immaculate::oracle::invalid::{Class, Invalid};
@@ -390,6 +391,14 @@ fn wrong_values() -> Vec<Defect> {
     let semidefinite = "is not positive semidefinite";
     vec![
         (
+        (
+            POLAR,
+            "/measurement/position",
+            json!([2, 2]),
+            shape,
+            "problem.measurement.position",
+            "names entry 2 twice",
+        ),
             LINEAR,
             "/format",
             json!("immaculate-problem/2"),
@@ -788,7 +797,11 @@ fn a_measurement_that_is_not_finite_is_refused() {
 
 #[test]
 fn the_published_schemas_are_those_of_the_code() {
-    for (name, schema) in [("problem", schema::of_problems()), ("trace", schema::of_traces())] {
+    for (name, schema) in [
+        ("problem", schema::of_problems()),
+        ("trace", schema::of_traces()),
+        ("certificate", schema::of_certificates()),
+    ] {
         let path = root().join(format!("spec/schemas/{name}.schema.json"));
         let published = std::fs::read_to_string(&path).unwrap_or_default();
         assert!(
@@ -892,6 +905,84 @@ fn answers_are_read_with_patience() {
     for (what, patient) in [
         (
             "a scalar for a list of one",
+/// The schema of certificates takes every published one and a counterexample, and refuses what the reader refuses: a key that is missing
+/// or not known, a value of another kind, a letter that names no filter, a form that is not 3 × 3, and more than a certificate may have.
+#[test]
+fn the_schema_of_certificates_refuses_what_the_reader_refuses() {
+    let schema = schema::of_certificates();
+    let is_taken = |value: &Value| against_schema(value, &schema, &schema, "certificate").is_ok();
+    let is_read = |value: &Value| {
+        CertificateFile::read(&with_digest(value))
+            .and_then(|file| file.check())
+            .is_ok()
+    };
+    for whole in certificates() {
+        assert!(is_taken(&whole) && is_read(&whole), "{whole}");
+        for pointer in pointers(&whole) {
+            let mut spoilt = whole.clone();
+            *spoilt.pointer_mut(&pointer).unwrap() = json!(true);
+            assert!(!is_taken(&spoilt) && !is_read(&spoilt), "{pointer} of the wrong kind");
+            let (parent, key) = pointer.rsplit_once('/').unwrap();
+            let mut spoilt = whole.clone();
+            match spoilt.pointer_mut(parent).unwrap() {
+                Value::Object(object) => object.shift_remove(key).map(drop).unwrap(),
+                // An edge or a node that is not there is a matter of the proof, and not of its form.
+                Value::Array(_) if parent.ends_with("/edges") || parent.ends_with("/forms") => continue,
+                Value::Array(list) => drop(list.remove(key.parse().unwrap())),
+                _ => unreachable!(),
+            }
+            assert!(!is_taken(&spoilt) && !is_read(&spoilt), "{pointer} is missing");
+            if let Some(object) = spoilt.pointer_mut(parent).and_then(Value::as_object_mut) {
+                *object = object_at(&mut whole.clone(), parent).clone();
+                object.insert("colour".into(), json!(1));
+                assert!(!is_taken(&spoilt) && !is_read(&spoilt), "{parent}: another key");
+            }
+        }
+    }
+    let all = certificates();
+    let stable = all
+        .iter()
+        .find(|certificate| certificate.pointer("/proof/stable").is_some())
+        .unwrap();
+    for (pointer, times) in [("/proof/stable/edges", 257), ("/proof/stable/forms", 257)] {
+        let mut long = stable.clone();
+        let list = long.pointer_mut(pointer).unwrap().as_array_mut().unwrap();
+        *list = list.iter().cycle().take(list.len() * times).cloned().collect();
+        assert!(!is_taken(&long) && !is_read(&long), "{pointer}");
+    }
+    let mut letter = stable.clone();
+    *letter.pointer_mut("/proof/stable/edges/0/1").unwrap() = json!("w");
+    assert!(!is_taken(&letter) && !is_read(&letter));
+}
+
+/// The published certificates, of stability and of instability.
+fn certificates() -> Vec<Value> {
+    let folder = std::fs::read_dir(root().join("fixtures/certificates")).unwrap();
+    let texts = folder.map(|entry| std::fs::read_to_string(entry.unwrap().path()).unwrap());
+    let all: Vec<Value> = texts.map(|text| parsed(&text)).collect();
+    for kind in [
+        "/proof/stable",
+        "/proof/unstable",
+        "/filters/noises",
+        "/filters/damping-roots",
+    ] {
+        assert!(
+            all.iter().any(|certificate| certificate.pointer(kind).is_some()),
+            "{kind}"
+        );
+    }
+    all
+}
+
+/// The text of a certificate, its digest, if it has one, that of what stands in it.
+fn with_digest(value: &Value) -> String {
+    let mut value = value.clone();
+    if value["digest"].is_string() {
+        value["digest"] = json!(case::digest(&format!("{}{}", value["filters"], value["proof"])));
+    }
+    value.to_string()
+}
+
             change("/0/mode_probabilities", json!(1.0)),
         ),
         (
@@ -1491,7 +1582,7 @@ fn numbers_in(text: &str) -> Vec<&str> {
     found
 }
 
-/// As much of JSON Schema as the two schemas use; a word that is not known here fails.
+/// As much of JSON Schema as the schemas use; a word that is not known here fails.
 fn against_schema(value: &Value, schema: &Value, root: &Value, place: &str) -> Result<(), String> {
     let wrong = |what: &str| Err(format!("{place}: {what}"));
     let empty = serde_json::Map::new();
@@ -1571,3 +1662,15 @@ fn is_of_type(value: &Value, rule: &Value) -> bool {
 fn list(value: &Value) -> &Vec<Value> {
     value.as_array().unwrap()
 }
+            "minLength" => value
+                .as_str()
+                .is_none_or(|text| text.chars().count() as u64 >= rule.as_u64().unwrap()),
+            "maxLength" => value
+                .as_str()
+                .is_none_or(|text| text.chars().count() as u64 <= rule.as_u64().unwrap()),
+            "prefixItems" => {
+                for (i, (item, rule)) in value.as_array().into_iter().flatten().zip(list(rule)).enumerate() {
+                    against_schema(item, rule, root, &format!("{place}[{i}]"))?;
+                }
+                true
+            }

@@ -219,7 +219,8 @@ fn kind_of_file(path: &str) -> String {
     KINDS.get(path).cloned().unwrap_or_default()
 }
 
-/// The mistakes and conventions of an equation: those that its row names, or all of its quantities that can be made where it is used.
+/// The mistakes and conventions of an equation: those that its row names, or all of its quantities that can be made where it is used. What
+/// is done to the equation itself comes before what it is given wrongly.
 fn mistakes(specification: &Specification, equation: &Equation) -> Vec<&'static Variant> {
     let everywhere = [Applies::All, Applies::SeveralModes, Applies::Missed];
     let used = equation.applies.as_ref().unwrap_or(&specification.applies);
@@ -231,5 +232,7 @@ fn mistakes(specification: &Specification, equation: &Equation) -> Vec<&'static 
         variant.kind != Kind::Form && is_of_quantity && is_used(variant.applies)
     });
     let is_named = |variant: &&Variant| equation.mistakes.is_empty() || equation.mistakes.contains(&variant.id);
-    made.filter(is_named).collect()
+    let mut named: Vec<&Variant> = made.filter(is_named).collect();
+    named.sort_by_key(|variant| variant.input);
+    named
 }

@@ -57,7 +57,7 @@ enum Action {
         #[arg(long)]
         json: bool,
     },
-    /// Print the JSON Schema of problem or trace files
+    /// Print the JSON Schema of problem, trace or certificate files
     Schema {
         /// Which
         #[arg(value_enum)]
@@ -76,6 +76,7 @@ enum Action {
 enum Format {
     Problem,
     Trace,
+    Certificate,
 }
 
 pub fn run(arguments: &Cases) -> Result<Done, Refusal> {
@@ -86,6 +87,9 @@ pub fn run(arguments: &Cases) -> Result<Done, Refusal> {
         Action::Verify { select, json } => verify(select, *json),
         Action::Schema { of: Format::Problem } => Ok(json_text(&schema::of_problems()).into()),
         Action::Schema { of: Format::Trace } => Ok(json_text(&schema::of_traces()).into()),
+        Action::Schema {
+            of: Format::Certificate,
+        } => Ok(json_text(&schema::of_certificates()).into()),
         Action::Write { folder } => write(folder),
     }
 }

@@ -10,7 +10,7 @@
 //! The position of a measurement is where its range and bearing point, whatever turn the bearing is counted from: no residual of angles is
 //! ever formed, and there is none to be wrapped. The conversions themselves are in [`crate::model::conversion`].
 
-use crate::model::{Measurement, PolarComponent};
+use crate::model::Measurement;
 use crate::number::Real;
 use nalgebra::{SMatrix, SVector};
 
@@ -54,7 +54,9 @@ pub fn converted_measurement<T: Real, const N: usize, const M: usize>(
     z: &SVector<T, M>,
     noise: &SMatrix<T, M, M>,
 ) -> SVector<T, M> {
-    let (Measurement::Converted { sensor, conversion, .. }, Some([r, b])) = (measurement, places(measurement)) else {
+    let (Measurement::Converted { sensor, conversion, .. }, Some([r, b])) =
+        (measurement, measurement.range_and_bearing())
+    else {
         return SVector::from_fn(|_, _| T::undecided());
     };
     let position = conversion.position(&z[r], &z[b], &noise[(b, b)]);
@@ -95,7 +97,8 @@ pub fn converted_covariance<T: Real, const N: usize, const M: usize>(
     z: &SVector<T, M>,
     noise: &SMatrix<T, M, M>,
 ) -> SMatrix<T, M, M> {
-    let (Measurement::Converted { conversion, .. }, Some([r, b])) = (measurement, places(measurement)) else {
+    let (Measurement::Converted { conversion, .. }, Some([r, b])) = (measurement, measurement.range_and_bearing())
+    else {
         return SMatrix::from_fn(|_, _| T::undecided());
     };
     let covariance = conversion.covariance(&z[r], &z[b], &noise[(r, r)], &noise[(b, b)]);
@@ -140,14 +143,5 @@ pub fn polar_position<T: Real, const N: usize, const M: usize>(
         }
         .of(state),
         _ => measurement.of(state),
-    }
-}
-
-/// Where range and bearing stand in z, if it is these two.
-fn places<T: Real, const N: usize, const M: usize>(measurement: &Measurement<T, N, M>) -> Option<[usize; 2]> {
-    let place = |wanted| (0..M).find(|&row| measurement.reports(row) == Some(wanted));
-    match (M, place(PolarComponent::Range), place(PolarComponent::Bearing)) {
-        (2, Some(range), Some(bearing)) => Some([range, bearing]),
-        _ => None,
     }
 }

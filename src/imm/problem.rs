@@ -11,7 +11,7 @@
 use crate::filter::fixed_gain::FixedGain;
 use crate::gaussian::Gaussian;
 use crate::matrix::{all_finite, is_finite, is_positive_definite, is_positive_semidefinite, is_symmetric};
-use crate::model::{Measurement, PolarComponent, motion::Mode};
+use crate::model::{Measurement, motion::Mode};
 use crate::number::Real;
 use crate::rule::Rule;
 use nalgebra::SMatrix;
@@ -183,6 +183,12 @@ pub enum InvalidProblem {
         /// The dimension of the state.
         dimension: usize,
     },
+    /// Both coordinates of the position of a polar measurement are the same entry of the state.
+    #[error("`measurement.position` names entry {index} twice; range and bearing need an x and a y (liu2017 (31))")]
+    PositionTwice {
+        /// The entry, counted from 0.
+        index: usize,
+    },
 }
 
 impl<T: Real, const N: usize, const M: usize> Problem<T, N, M> {
@@ -265,6 +271,9 @@ impl<T: Real, const N: usize, const M: usize> Problem<T, N, M> {
                 if let Some(&index) = position.iter().find(|&&index| index >= N) {
                     return Err(InvalidProblem::Position { index, dimension: N });
                 }
+                if position[0] == position[1] {
+                    return Err(InvalidProblem::PositionTwice { index: position[0] });
+                }
                 if sensor.iter().all(is_finite) {
                     return Ok(());
                 }
@@ -280,8 +289,7 @@ impl<T: Real, const N: usize, const M: usize> Problem<T, N, M> {
         if !self.measurement.is_converted() {
             return Ok(());
         }
-        let has = |wanted| (0..M).any(|row| self.measurement.reports(row) == Some(wanted));
-        if M != 2 || !has(PolarComponent::Range) || !has(PolarComponent::Bearing) {
+        if self.measurement.range_and_bearing().is_none() {
             return Err(InvalidProblem::NotRangeAndBearing);
         }
         if self.measurement_noise[(1, 0)].is_zero() {

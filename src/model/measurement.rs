@@ -127,6 +127,27 @@ impl<T: Real, const N: usize, const M: usize> Measurement<T, N, M> {
         }
     }
 
+    /// Where range and bearing stand in z, if it is one of each and nothing else: what is needed for a position.
+    ///
+    /// Source: sustika2015, section 3.1.
+    ///
+    /// Example: a radar that reports the bearing first, and one without a range.
+    ///
+    /// ```
+    /// use immaculate::model::{Measurement, PolarComponent::{Bearing, Range}};
+    ///
+    /// let (position, sensor) = ([0, 1], [0.0, 0.0]);
+    /// let radar = Measurement::<f64, 2, 2>::Polar { components: [Bearing, Range], position, sensor };
+    /// assert_eq!(radar.range_and_bearing(), Some([1, 0]));
+    /// let bearings = Measurement::<f64, 2, 2>::Polar { components: [Bearing, Bearing], position, sensor };
+    /// assert_eq!(bearings.range_and_bearing(), None);
+    /// ```
+    pub fn range_and_bearing(&self) -> Option<[usize; 2]> {
+        let place = |wanted| (0..M).find(|&row| self.reports(row) == Some(wanted));
+        let both = place(PolarComponent::Range).zip(place(PolarComponent::Bearing));
+        both.filter(|_| M == 2).map(|(range, bearing)| [range, bearing])
+    }
+
     /// Whether the filter converts it to a position.
     pub fn is_converted(&self) -> bool {
         matches!(self, Self::Converted { .. })

@@ -10,6 +10,7 @@ use crate::number::Rational;
 use crate::steady::certificate::{Edge, NotProven, Product, Quadratics};
 use crate::steady::verdict::{Filters, LETTERS, Verdict, word_text};
 use nalgebra::SMatrix;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The format of certificate files.
@@ -32,10 +33,10 @@ const MOST_FORMS: usize = 256;
 const MOST_EDGES: usize = 2 * MOST_FORMS;
 
 /// A certificate as it stands in a file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CertificateFile {
-    /// [`FORMAT`].
+    /// `immaculate-certificate/1`.
     pub format: String,
     /// What it is about, for people.
     pub about: String,
@@ -48,7 +49,7 @@ pub struct CertificateFile {
 }
 
 /// The filters of a certificate.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum FiltersFile {
     /// θ_v and θ_a.
@@ -58,7 +59,7 @@ pub enum FiltersFile {
 }
 
 /// Scan time and noises.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub struct Noises {
     /// t, s.
@@ -72,19 +73,22 @@ pub struct Noises {
 }
 
 /// The proof of a certificate.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum ProofFile {
     /// Stable: quadratic forms on the nodes of a graph.
     Stable {
         /// From node, letter, to node.
+        #[schemars(length(max = MOST_EDGES))]
         edges: Vec<(usize, char, usize)>,
         /// One symmetric matrix a node, by rows.
+        #[schemars(with = "Vec<[[String; 3]; 3]>", length(max = MOST_FORMS))]
         forms: Vec<Vec<Vec<String>>>,
     },
     /// Unstable: a product with a spectral radius of at least `radius`.
     Unstable {
         /// The letters, the first acting first.
+        #[schemars(length(max = LONGEST_WORD))]
         word: String,
         /// The bound.
         radius: String,

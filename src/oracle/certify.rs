@@ -87,13 +87,35 @@ pub fn certify(problem: &ProblemFile) -> Result<Certified, NotCertified> {
 pub fn certify_from(problem: &ProblemFile, first_bits: u32) -> Result<Certified, NotCertified> {
     problem.check()?;
     let Dimensions { n, m, .. } = problem.dimensions();
+    let attempt = |bits| shape::dispatch(n, m, Attempt { problem, bits })?;
+    with_more_and_more_bits(first_bits, attempt).map(|(certified, _)| certified)
+}
+
+/// Tries with so many bits, then with twice as many until an attempt is decided; what it gives, and the bits.
+fn with_more_and_more_bits<V>(
+    first_bits: u32,
+    attempt: impl Fn(u32) -> Result<V, NotCertified>,
+) -> Result<(V, u32), NotCertified> {
     let mut bits = first_bits;
     loop {
-        match shape::dispatch(n, m, Attempt { problem, bits })? {
-            Ok(certified) => return Ok(certified),
+        match attempt(bits) {
+            Ok(found) => return Ok((found, bits)),
             Err(NotCertified::Undecided { .. }) if bits < MOST_BITS => bits *= 2,
             Err(error) => return Err(error),
         }
+    }
+}
+
+/// The values of a problem as enclosures, in the precision of the scope.
+fn enclosed<const N: usize, const M: usize>(
+    problem: &ProblemFile,
+    undecided: impl Fn(String) -> NotCertified,
+) -> Result<Table<Vec<Enclosure>>, NotCertified> {
+    let setup: Setup<Enclosure, N, M> = problem.setup(Enclosure::exact)?;
+    let computed = setup.run();
+    match computed.failures.first() {
+        Some(failure) => Err(undecided(failure.to_string())),
+        None => Ok(computed.values),
     }
 }
 
@@ -109,13 +131,8 @@ impl Work for Attempt<'_> {
     fn run<const N: usize, const M: usize>(self) -> Self::Output {
         let Self { problem, bits } = self;
         let undecided = |reason: String| NotCertified::Undecided { reason, bits };
-        let (trace, digits) = Enclosure::with_precision(bits, || -> Result<_, NotCertified> {
-            let setup: Setup<Enclosure, N, M> = problem.setup(Enclosure::exact)?;
-            let computed = setup.run();
-            if let Some(failure) = computed.failures.first() {
-                return Err(undecided(failure.to_string()));
-            }
-            nearest(problem, &computed.values).map_err(undecided)
+        let (trace, digits) = Enclosure::with_precision(bits, || {
+            nearest(problem, &enclosed::<N, M>(problem, undecided)?).map_err(undecided)
         })?;
         let scale = scales(problem, &trace);
         let unit_roundoff = f64::EPSILON / 2.0;
@@ -251,14 +268,9 @@ pub fn certified_decimals(problem: &ProblemFile, digits: u32) -> Result<(Table<V
     problem.check()?;
     let Dimensions { n, m, .. } = problem.dimensions();
     // 3.33 bits a digit, and some for what is lost on the way.
-    let mut bits = FIRST_BITS.max((digits.saturating_mul(4)).next_power_of_two());
-    loop {
-        match shape::dispatch(n, m, Decimals { problem, bits, digits })? {
-            Ok(decimals) => return Ok((decimals, bits)),
-            Err(NotCertified::Undecided { .. }) if bits < MOST_BITS => bits *= 2,
-            Err(error) => return Err(error),
-        }
-    }
+    let first_bits = FIRST_BITS.max((digits.saturating_mul(4)).next_power_of_two());
+    let attempt = |bits| shape::dispatch(n, m, Decimals { problem, bits, digits })?;
+    with_more_and_more_bits(first_bits, attempt)
 }
 
 /// One attempt at decimals.
@@ -275,12 +287,7 @@ impl Work for Decimals<'_> {
         let Self { problem, bits, digits } = self;
         let undecided = |reason: String| NotCertified::Undecided { reason, bits };
         Enclosure::with_precision(bits, || {
-            let setup: Setup<Enclosure, N, M> = problem.setup(Enclosure::exact)?;
-            let computed = setup.run();
-            if let Some(failure) = computed.failures.first() {
-                return Err(undecided(failure.to_string()));
-            }
-            let values = computed.values;
+            let values = enclosed::<N, M>(problem, undecided)?;
             let about = about(problem, &values);
             let mut decimals = Table::empty(values.dimensions);
             for (step, quantity, mode) in values.all_places() {

@@ -312,7 +312,7 @@ impl Case<'_> {
             if self.shown.get(step, quantity, mode).is_none() {
                 continue;
             }
-            let hidden = hidden_inputs(self.problem, self.shown, place);
+            let (hidden, last_shown) = inputs(self.problem, self.shown, place);
             let against_certified = self.error(place, &self.reference.trace, &self.reference.noise);
             let against_own = self.error(place, &own.values, &own.noise);
             let is_right = against_certified.is_some_and(|error| error.ratio <= LIMIT);
@@ -320,13 +320,11 @@ impl Case<'_> {
             let finding = if self.reference.trace.get(step, quantity, mode).is_none() {
                 Finding::Stale
             } else if self.shown.finite(step, quantity, mode).is_none() {
-                let is_inherited = shown_inputs(self.problem, self.shown, place)
-                    .into_iter()
-                    .any(|(step, input, mode)| self.shown.finite(step, input, mode).is_none());
-                if is_inherited {
-                    Finding::Propagated
-                } else {
+                let is_finite = |&(step, input, mode): &Place| self.shown.finite(step, input, mode).is_some();
+                if last_shown.iter().all(is_finite) {
                     Finding::NotFinite
+                } else {
+                    Finding::Propagated
                 }
             } else if self.reference.is_drowned(place)
                 && (is_right || is_drowned(place, &own.noise, &self.reference.scale))
@@ -414,7 +412,7 @@ impl Case<'_> {
     }
 }
 
-/// The values that one depends on: those between it and the last shown ones are hidden, and these are shown.
+/// The values that one depends on: the hidden ones between it and the last shown ones, and these.
 fn inputs(problem: &ProblemFile, shown: &Trace, place: Place) -> (BTreeSet<Place>, BTreeSet<Place>) {
     let r = shown.dimensions.r;
     let has_detection = |step: usize| {
@@ -448,14 +446,4 @@ fn inputs(problem: &ProblemFile, shown: &Trace, place: Place) -> (BTreeSet<Place
         }
     }
     (hidden, last_shown)
-}
-
-/// The hidden values that a shown one depends on, back to the last shown ones.
-fn hidden_inputs(problem: &ProblemFile, shown: &Trace, place: Place) -> Vec<Place> {
-    inputs(problem, shown, place).0.into_iter().collect()
-}
-
-/// The last shown values that a shown one depends on.
-fn shown_inputs(problem: &ProblemFile, shown: &Trace, place: Place) -> BTreeSet<Place> {
-    inputs(problem, shown, place).1
 }

@@ -3,7 +3,7 @@
 //! After this file the reader knows how a program that hangs, ends, floods or answers out of order is noticed. Reading and writing
 //! happen in threads of their own, so that nothing the program does can block the check.
 
-use super::invalid;
+use super::invalid::shortened;
 use super::problem::ProblemFile;
 use super::subject::{Answer, Broken, ECHO, Ready, Subject};
 use super::trace::{Dimensions, Trace, read_json};
@@ -156,11 +156,11 @@ impl Process {
         let message = self.receive(Instant::now(), self.start_limit)?;
         match message.get("type").and_then(Value::as_str) {
             Some("ready") => Ready::read(&message).map_err(|reason| Broken::Garbage {
-                line: shortened(&message.to_string()),
+                line: beginning(&message.to_string()),
                 reason,
             }),
             _ => Err(Broken::Garbage {
-                line: shortened(&message.to_string()),
+                line: beginning(&message.to_string()),
                 reason: "the first message must have type \"ready\"".into(),
             }),
         }
@@ -195,7 +195,7 @@ impl Process {
                     match read_json(&line) {
                         Ok(message) => return Ok(message),
                         Err(reason) => {
-                            let line = shortened(&line);
+                            let line = beginning(&line);
                             return Err(Broken::Garbage { line, reason });
                         }
                     }
@@ -250,7 +250,7 @@ impl Process {
             if id != problem.id {
                 return Err(Broken::OutOfOrder {
                     asked: problem.id.clone(),
-                    answered: shortened(&id),
+                    answered: beginning(&id),
                 });
             }
             return read_answer(&message, problem.dimensions());
@@ -288,7 +288,7 @@ impl Subject for Process {
                 if let Line::Text(line) = line
                     && line.trim_start().starts_with('{')
                 {
-                    let sentence = format!("said more than it was asked for: {}", shortened(&line));
+                    let sentence = format!("said more than it was asked for: {}", beginning(&line));
                     remark(&mut self.remarks, sentence);
                 }
                 if Instant::now() > end {
@@ -316,12 +316,12 @@ impl Drop for Process {
 pub fn read_answer(message: &Value, dimensions: Dimensions) -> Result<Answer, Broken> {
     if !message.is_object() {
         return Err(Broken::Garbage {
-            line: shortened(&message.to_string()),
+            line: beginning(&message.to_string()),
             reason: "an answer is an object".into(),
         });
     }
     let text = |key: &str| {
-        invalid::shortened(
+        shortened(
             message.get(key).and_then(Value::as_str).unwrap_or_default(),
             REASON_KEPT,
         )
@@ -330,8 +330,8 @@ pub fn read_answer(message: &Value, dimensions: Dimensions) -> Result<Answer, Br
         Some("answer") | None => {
             for key in message.as_object().into_iter().flat_map(|object| object.keys()) {
                 if !["type", "id", "format", "steps", "error", "scale", "noise"].contains(&key.as_str()) {
-                    let reason = format!("`{}` is not a key of an answer", shortened(key));
-                    let line = shortened(&message.to_string());
+                    let reason = format!("`{}` is not a key of an answer", beginning(key));
+                    let line = beginning(&message.to_string());
                     return Err(Broken::Garbage { line, reason });
                 }
             }
@@ -347,8 +347,8 @@ pub fn read_answer(message: &Value, dimensions: Dimensions) -> Result<Answer, Br
             reason: text("reason"),
         }),
         Some(other) => Err(Broken::Garbage {
-            line: shortened(&message.to_string()),
-            reason: format!("{:?} is not the type of an answer", shortened(other)),
+            line: beginning(&message.to_string()),
+            reason: format!("{:?} is not the type of an answer", beginning(other)),
         }),
     }
 }
@@ -357,10 +357,10 @@ pub fn read_answer(message: &Value, dimensions: Dimensions) -> Result<Answer, Br
 fn error_of(value: Option<&Value>) -> Option<String> {
     match value? {
         Value::Null | Value::Bool(false) => None,
-        Value::String(text) => (!text.trim().is_empty()).then(|| invalid::shortened(text, REASON_KEPT)),
+        Value::String(text) => (!text.trim().is_empty()).then(|| shortened(text, REASON_KEPT)),
         Value::Array(list) if list.is_empty() => None,
         Value::Object(object) if object.is_empty() => None,
-        other => Some(shortened(&other.to_string())),
+        other => Some(beginning(&other.to_string())),
     }
 }
 
@@ -443,7 +443,7 @@ fn crashed(running: &mut Running) -> Broken {
 }
 
 /// The beginning of a line, for a report.
-fn shortened(line: &str) -> String {
+fn beginning(line: &str) -> String {
     const KEPT: usize = 120;
     match line.trim_end().char_indices().nth(KEPT) {
         Some((end, _)) => format!("{}…", &line[..end]),

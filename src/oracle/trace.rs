@@ -361,7 +361,7 @@ pub(super) fn is_not_finite(word: &str) -> bool {
     ["nan", "inf", "infinity"].contains(&word.as_str())
 }
 
-/// A list, or one value as a list of one. A list of one list of objects is that list.
+/// A list, or one value as a list of one.
 fn as_list(value: &Value) -> Vec<&Value> {
     match value {
         Value::Array(list) => list.iter().collect(),

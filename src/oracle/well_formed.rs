@@ -220,7 +220,8 @@ fn of_problem(error: &InvalidProblem) -> Invalid {
         InvalidProblem::Length { .. }
         | InvalidProblem::NoModes
         | InvalidProblem::RuleLengths { .. }
-        | InvalidProblem::Position { .. } => Class::Shape,
+        | InvalidProblem::Position { .. }
+        | InvalidProblem::PositionTwice { .. } => Class::Shape,
         InvalidProblem::NotFinite { .. } => Class::NotFinite,
         InvalidProblem::NegativeProbability { .. } | InvalidProblem::NotNormalised { .. } => Class::NotAProbability,
         InvalidProblem::NotSymmetric { .. } => Class::NotSymmetric,

@@ -4,7 +4,7 @@
 //! right, apart from what the other files of this folder are for.
 
 use super::draft::{covariance, filter, map, rows, unscented};
-use super::scene::{PLANE_TRACK, RADAR_TRACK, axis, derivatives, plane, radar, scalar};
+use super::scene::{PLANE_TRACK, RADAR_TRACK, SENSOR, axis, derivatives, plane, radar, scalar};
 use crate::oracle::problem::{MeasurementFile, ProblemFile};
 
 /// The problems of this file.
@@ -104,11 +104,11 @@ fn components() -> Vec<ProblemFile> {
              entries exchanged. A filter that wraps a fixed entry shows here.",
         ),
         radar("cubature-5")
-            .polar(&["bearing"], [0, 2], [-40.0, 25.0], rows([[0.003_025]]))
+            .polar(&["bearing"], [0, 2], SENSOR, rows([[0.003_025]]))
             .sees(&[[-0.41]])
             .named("step.bearing-only", &flags, "Only the bearing is measured: m = 1, and the one entry is an angle."),
         radar("cubature-5")
-            .polar(&["range"], [0, 2], [-40.0, 25.0], rows([[81.0]]))
+            .polar(&["range"], [0, 2], SENSOR, rows([[81.0]]))
             .sees(&[[207.0]])
             .named("step.range-only", &flags, "Only the range is measured: m = 1, and nothing is an angle."),
         radar("simplex-5")

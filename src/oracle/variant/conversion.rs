@@ -48,7 +48,7 @@ fn of_covariance<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut 
                 let Measurement::Converted { conversion, .. } = &problem.measurement else {
                     return usual(problem, now);
                 };
-                let [range_variance, bearing_variance, range] = parts(problem, now);
+                let ([range_variance, bearing_variance], [range, _]) = (variances(problem), measured(problem, now));
                 let squared_range = range.clone() * range;
                 let attenuation = attenuation(&bearing_variance);
                 let variances = conversion.variances(&squared_range, &range_variance, &bearing_variance, &attenuation);
@@ -83,7 +83,7 @@ fn of_covariance<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut 
         // r σ_θ² for r² σ_θ²: the variance of the bearing divided by the range before the usual equations see it
         "converted-covariance-range-not-squared" => {
             *entry = |problem, _, now| {
-                let [_, _, range] = parts(problem, now);
+                let [range, _] = measured(problem, now);
                 let mut noise = problem.measurement_noise.clone();
                 for row in (0..M).filter(|&row| problem.measurement.reports(row) == Some(PolarComponent::Bearing)) {
                     noise[(row, row)] /= range.clone();
@@ -206,24 +206,19 @@ fn sensor<T: Real, const N: usize, const M: usize>(problem: &Problem<T, N, M>) -
 
 /// Range and bearing as they were measured.
 fn measured<T: Real, const N: usize, const M: usize>(problem: &Problem<T, N, M>, now: &Step<T, N, M>) -> [T; 2] {
-    let of = |component| {
-        let row = (0..M).find(|&row| problem.measurement.reports(row) == Some(component));
-        let z = now.measurement.as_ref().zip(row);
-        z.map_or_else(T::undecided, |(z, row)| z[row].clone())
-    };
-    [of(PolarComponent::Range), of(PolarComponent::Bearing)]
+    let places = problem.measurement.range_and_bearing();
+    let both = now.measurement.as_ref().zip(places);
+    both.map_or_else(
+        || [T::undecided(), T::undecided()],
+        |(z, places)| places.map(|row| z[row].clone()),
+    )
 }
 
-/// σ_r², σ_θ² and the measured range.
-fn parts<T: Real, const N: usize, const M: usize>(problem: &Problem<T, N, M>, now: &Step<T, N, M>) -> [T; 3] {
-    let variance = |component| {
-        let row = (0..M).find(|&row| problem.measurement.reports(row) == Some(component));
-        row.map_or_else(T::undecided, |row| problem.measurement_noise[(row, row)].clone())
-    };
-    let [range, _] = measured(problem, now);
-    [
-        variance(PolarComponent::Range),
-        variance(PolarComponent::Bearing),
-        range,
-    ]
+/// σ_r² and σ_θ².
+fn variances<T: Real, const N: usize, const M: usize>(problem: &Problem<T, N, M>) -> [T; 2] {
+    let (places, noise) = (problem.measurement.range_and_bearing(), &problem.measurement_noise);
+    places.map_or_else(
+        || [T::undecided(), T::undecided()],
+        |places| places.map(|row| noise[(row, row)].clone()),
+    )
 }

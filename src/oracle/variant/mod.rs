@@ -170,6 +170,9 @@ pub struct Variant {
     pub converted: Option<Quantity>,
     /// Where it can make a difference.
     pub applies: Applies,
+    /// Whether the equation is right, and what it is given was read wrongly.
+    #[serde(default)]
+    pub input: bool,
     /// What was done, said to the one who did it.
     pub about: String,
     /// What can be seen of it.
