@@ -285,6 +285,82 @@ fn a_radius_that_fits_its_thirty_bits_is_not_enlarged() {
 }
 
 #[test]
+fn a_radius_is_rounded_up_by_a_unit_of_its_thirty_bits_at_most() {
+    let mut generator = ChaCha8Rng::seed_from_u64(73);
+    let unit = power(-29);
+    Enclosure::with_precision(64, || {
+        for _ in 0..500 {
+            let [r, s] =
+                [0, 1].map(|_| f64::from(generator.next_u32()) + f64::from(generator.next_u32()) / 2.0_f64.powi(21));
+            let exact = |x: f64| Rational::from_f64(x);
+            let (ball, other) = (Enclosure::around(0.0, r), Enclosure::around(0.0, s));
+            let divisor = Enclosure::exact(s);
+            for (upper, radius, roundings) in [
+                (ball.upper(), exact(r), 1),
+                ((&ball * &other).upper(), exact(r) * exact(s), 3),
+                ((&ball + &other).upper(), exact(r) + exact(s), 3),
+                ((&ball / &divisor).upper(), exact(r) / exact(s), 3),
+            ] {
+                let most = &radius * (Rational::one() + &unit * Rational::integer(roundings));
+                assert!(radius <= upper && upper <= most, "{r} {s}: {upper} for {radius}");
+            }
+        }
+        // All thirty bits, and one more: the next number is a power of two.
+        let ones = 2.0_f64.powi(31) - 1.0;
+        assert_eq!(Enclosure::around(0.0, ones).upper(), power(31));
+        // A quotient that has no remainder is not rounded.
+        for divisor in [3.0, 7.0, 48.0] {
+            let quotient = Enclosure::around(0.0, 5.0 * divisor) / Enclosure::exact(divisor);
+            assert_eq!(quotient.upper(), Rational::integer(5));
+        }
+    });
+}
+
+#[test]
+fn an_exponential_of_a_wide_ball_is_no_wider_than_its_bound() {
+    // e^(x ± ρ) within eˣ (1 ± 2ᵏ), k = ⌊3ρ/2⌋ + 1: e^ρ ≤ 2^(3ρ/2), and one more for what is rounded.
+    Enclosure::with_precision(64, || {
+        for (radius, k) in [(1.0, 2), (1.25, 2), (1.5, 3), (2.0, 4), (10.0, 16), (100.0, 151)] {
+            for middle in [0.0, -3.0, 20.0] {
+                let wide = Enclosure::around(middle, radius).exp();
+                let most = Enclosure::exact(middle).exp() * (Enclosure::one() + Enclosure::rational(&power(k)));
+                let end = Enclosure::exact(middle + radius).exp();
+                assert!(
+                    wide.contains(&end.lower()) && wide.contains(&end.upper()),
+                    "{middle} ± {radius}"
+                );
+                assert!(
+                    wide.upper() <= most.upper() * (Rational::one() + power(-27)),
+                    "{middle} ± {radius}"
+                );
+            }
+        }
+    });
+}
+
+#[test]
+fn numbers_beyond_what_is_written_out_are_known_and_not_written() {
+    // Ends of more than 2²⁴ bits would fill megabytes: no decimal, and no fraction.
+    Enclosure::with_precision(24, || {
+        for argument in [2e7, -2e7] {
+            let value = Enclosure::exact(argument).exp();
+            assert!(value > Enclosure::zero() && value.relative_bits() > 20);
+            assert!(!value.lower().is_decided() && !value.upper().is_decided());
+            assert_eq!(value.to_decimal(3), None);
+        }
+        // And not much below they are.
+        for (argument, decimal) in [(1e5, "2.807e43429"), (-1e5, "3.563e-43430")] {
+            assert_eq!(
+                Enclosure::with_precision(60, || Enclosure::exact(argument).exp())
+                    .to_decimal(4)
+                    .as_deref(),
+                Some(decimal)
+            );
+        }
+    });
+}
+
+#[test]
 fn a_radius_covers_bits_far_below_its_own() {
     // 1 + 2⁻ᵏ in [−1, 1] · (1 + 2⁻ᵏ): thirty bits do not show the last one, however many zeros are before it.
     for places in [20, 29, 30, 31, 63, 64, 65, 100, 126, 127, 128, 129, 150, 300] {

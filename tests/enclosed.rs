@@ -1059,6 +1059,19 @@ fn size_width_and_certain_bits_are_bounds() {
 }
 
 #[test]
+fn the_middle_is_the_double_nearest_to_it() {
+    repeat(65, 500, |draw| {
+        let (x, y) = (draw.any_double(), draw.double(53, 3));
+        assert_eq!(draw.ball_around(x).middle(), x);
+        // (lower + upper)/2, rounded once.
+        let value = Enclosure::exact(x) / Enclosure::exact(y);
+        let middle = (value.lower() + value.upper()) / Rational::integer(2);
+        assert_eq!(value.middle(), middle.to_f64() + 0.0, "{value}");
+    });
+    assert!(Enclosure::undecided().middle().is_nan());
+}
+
+#[test]
 fn an_enclosure_prints_its_middle_and_radius() {
     assert_eq!(Enclosure::around(3.0, 0.001).to_string(), "3.0000e0 ± 1.0e-3");
     assert_eq!(Enclosure::exact(-0.5).to_string(), "-5.0000000000000000e-1");

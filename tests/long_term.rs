@@ -858,6 +858,61 @@ fn alpha_beta_like() -> Matrix3<Unknown> {
     covariance
 }
 
+/// Exact: the axes are those that the paper prints, 0 to 95 m/s² in steps of five, R from 0.05 to 0.5 m², q_v from 2 to 40 m²/s⁴; all else
+/// is as it is everywhere. A row of the grid is a row of its settings.
+#[test]
+fn the_grids_are_those_of_the_figures() {
+    let accelerations: Vec<f64> = (0..20_u32).map(|k| 5.0 * f64::from(k)).collect();
+    for (grid, names_unit, first, last, rows) in [
+        (Grid::figure_1(2.0), "m²", 0.05, 0.5, 10),
+        (Grid::figure_2(2.0), "m²/s⁴", 2.0, 40.0, 20),
+    ] {
+        assert!(grid.rows_are.contains(names_unit), "{}", grid.rows_are);
+        assert_eq!((&grid.columns, grid.rows.len()), (&accelerations, rows));
+        assert_eq!((grid.rows[0], grid.rows[rows - 1]), (first, last));
+        // Evenly: no step differs from the first by more than the rounding of the decimals.
+        let step = (last - first) / (rows - 1) as f64;
+        assert!(
+            grid.rows
+                .windows(2)
+                .all(|pair| (pair[1] - pair[0] - step).abs() < 1e-12)
+        );
+        assert_eq!(grid.settings.len(), rows * 20);
+        for (index, found) in grid.settings.iter().enumerate() {
+            let row = grid.rows[index / 20];
+            let (measurement_variance, velocity) = if names_unit == "m²" { (row, 5.0) } else { (0.05, row) };
+            let expected = Setting {
+                measurement_variance,
+                noises: [velocity, 5.0],
+                ..setting(2.0, accelerations[index % 20])
+            };
+            assert_eq!(found, &expected, "{index}");
+        }
+    }
+}
+
+/// Property: each point has its own noise, and 100 (predicted − simulated)/simulated of the traces is its percentage.
+#[test]
+fn a_percentage_is_that_of_its_own_point() {
+    let noise = |point: usize| {
+        let mut generator = Generator::new(2000, point as u64);
+        move || generator.standard_normal()
+    };
+    let mut grid = Grid::figure_1(2.0);
+    grid.settings = vec![setting(2.0, 0.0), setting(2.0, 50.0), setting(1.0, 95.0)];
+    let found = grid
+        .percentages(Algorithm::Corrected, Start::AtTheTruth, noise)
+        .unwrap();
+    assert_eq!(found.len(), 3);
+    for (point, (setting, found)) in grid.settings.iter().zip(&found).enumerate() {
+        let simulated = simulate(setting, Start::AtTheTruth, noise(point)).unwrap().total();
+        let expected = 100.0 * (predicted(setting, Algorithm::Corrected).total() / simulated - 1.0);
+        // Three roundings of a ratio near one, in per cent.
+        assert!((found - expected).abs() < 1e-12 * 100.0, "{point}: {found} {expected}");
+    }
+    assert!(found.iter().all(|percentage| percentage.abs() > 1e-3), "{found:?}");
+}
+
 #[test]
 fn the_figures_show_where_the_prediction_is_right() {
     // Statistics over the grids of figures 1 and 2 with one run of 800 points a point, as in the paper, seed 2000; the medians are far

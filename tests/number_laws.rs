@@ -347,6 +347,23 @@ fn a_decimal_is_read_exactly() {
     ] {
         assert!(Rational::from_decimal(text).is_none(), "{text} was read");
     }
+    // The longest text and the greatest exponents that are read, and one more.
+    for length in [9_999, 10_000, 10_001, 20_000] {
+        let text = format!("{:0>length$}", 7);
+        assert_eq!(
+            Rational::from_decimal(&text),
+            (length <= 10_000).then(|| Rational::integer(7)),
+            "{length}"
+        );
+    }
+    for exponent in ["10000", "-10000"] {
+        let number = Rational::from_decimal(&format!("1e{exponent}")).unwrap();
+        let back = Rational::from_decimal(&format!(
+            "1e{}",
+            exponent.strip_prefix('-').map_or(format!("-{exponent}"), str::to_owned)
+        ));
+        assert_eq!(number * back.unwrap(), Rational::one());
+    }
 }
 
 #[test]
@@ -685,6 +702,23 @@ proptest! {
             prop_assert_eq!(value(&composed, Surd::rational(&x)), expected);
         }
     }
+}
+
+#[test]
+fn a_polynomial_has_the_value_that_its_terms_add_up_to() {
+    // 3x²y − √2·x + 5 at x = 2, y = −1: −12 − 2√2 + 5.
+    let (x, y) = (Polynomial::unknown("x"), Polynomial::unknown("y"));
+    let constant = |value: &Surd| Polynomial::constant(value);
+    let polynomial = constant(&Surd::integer(3)) * &x * &x * &y - constant(&root(2)) * &x + constant(&Surd::integer(5));
+    let value = Surd::integer(-7) - Surd::integer(2) * root(2);
+    let at = [("y", Rational::integer(-1)), ("x", Rational::integer(2))];
+    assert_eq!(polynomial.evaluate(&at), Some(value.clone()));
+    assert_eq!(
+        polynomial.substitute(&[("x", Surd::integer(2)), ("y", Surd::integer(-1))]),
+        value
+    );
+    assert_eq!(polynomial.evaluate(&at[..1]), None);
+    assert_eq!(Polynomial::zero().evaluate(&[]), Some(Surd::zero()));
 }
 
 #[test]

@@ -214,8 +214,8 @@ impl Dyadic {
             return None;
         }
         let digits = i64::from(digits.max(1));
-        // The k with 10ᵏ ≤ |x| < 10ᵏ⁺¹, or one or two less, which the loop raises: 0.30103 is above log₁₀ 2 by less than 10⁻⁸, so that up to
-        // 2²⁴ the product is off by less than one, and one is taken away.
+        // The k with 10ᵏ ≤ |x| < 10ᵏ⁺¹, or one or two less, which the loop raises: 0.30103 is above log₁₀ 2 by less than 10⁻⁸, so that
+        // up to 2²⁴ the product is off by less than one, and one is taken away.
         let mut power = (self.top() - 1) * 30103 / 100_000 - 1;
         let (limit, mut whole);
         limit = BigUint::from(10_u8).pow(u32::try_from(digits).ok()?);

@@ -355,9 +355,9 @@ fn angle(y: &Dyadic, x: &Dyadic, moved: Bound, precision: i64) -> Option<Ball> {
     }
     if quarters > 0 {
         let pi = series::pi(w);
-        // quarters · π/2: half of an odd multiple is cut by less than a unit.
+        // quarters · π/2, with quarters no more than two: half of an odd multiple is cut by less than a unit.
         sum.value += (pi.value * quarters) >> 1_u8;
-        sum.error += 2 * pi.error + 1;
+        sum.error += pi.error + 1;
     }
     if is_below {
         sum.value = -sum.value;
