@@ -7,7 +7,7 @@
 
 use immaculate::oracle::case::{self, BadCase, Case, Expected, LOCK, Lock};
 use immaculate::oracle::certificate::CertificateFile;
-use immaculate::oracle::certify::long_csv;
+use immaculate::oracle::certify::{certified_decimals, certify, long_csv};
 use immaculate::oracle::csv;
 use immaculate::oracle::invalid::{Class, Invalid};
 use immaculate::oracle::problem::ProblemFile;
@@ -177,6 +177,24 @@ fn every_defect_has_its_class_its_place_and_its_sentence() {
         assert_eq!(invalid.place, place, "{at}");
         assert!(invalid.reason.contains(words), "{words} in {at}");
         assert!(!invalid.to_string().contains('\n'), "one sentence: {at}");
+    }
+}
+
+/// Exact: a range is a distance from zero on, and a bearing is taken up to a whole turn on either side.
+#[test]
+fn a_measurement_is_taken_up_to_its_limits() {
+    const TURN: f64 = std::f64::consts::TAU;
+    let with = |z: [f64; 2]| {
+        let mut changed = value_of(POLAR);
+        changed["measurements"][0]["z"] = json!(z);
+        ProblemFile::read(&changed.to_string()).map_err(|invalid| invalid.class)
+    };
+    for z in [[0.0, -0.41], [-0.0, -0.41], [207.0, TURN], [207.0, -TURN]] {
+        assert!(with(z).is_ok(), "{z:?}");
+    }
+    assert_eq!(with([-1e-300, -0.41]), Err(Class::Range));
+    for bearing in [TURN.next_up(), -TURN.next_up()] {
+        assert_eq!(with([207.0, bearing]), Err(Class::Angle));
     }
 }
 
@@ -373,6 +391,14 @@ fn wrong_shapes() -> Vec<Defect> {
             "entry 4 of a state of 4",
         ),
         (
+            POLAR,
+            "/measurement/position",
+            json!([2, 2]),
+            shape,
+            "problem.measurement.position",
+            "names entry 2 twice",
+        ),
+        (
             LINEAR,
             "/state",
             json!([]),
@@ -391,14 +417,6 @@ fn wrong_values() -> Vec<Defect> {
     let semidefinite = "is not positive semidefinite";
     vec![
         (
-        (
-            POLAR,
-            "/measurement/position",
-            json!([2, 2]),
-            shape,
-            "problem.measurement.position",
-            "names entry 2 twice",
-        ),
             LINEAR,
             "/format",
             json!("immaculate-problem/2"),
@@ -793,6 +811,41 @@ fn a_measurement_that_is_not_finite_is_refused() {
     );
 }
 
+/// By hand: the names by which filters are selected, and the equations of those that take a value from another place than most.
+#[test]
+fn a_filter_has_a_name_and_equations_of_its_paper() {
+    let filter = |id: &str| ProblemFile::parse(&value_of(id).to_string()).unwrap().filter;
+    let unmixed = "step.fixed-gain-unmixed";
+    let names = [LINEAR, POLAR, UNSCENTED, CONVERTED, FIXED, unmixed].map(|id| filter(id).name().to_owned());
+    assert_eq!(
+        names,
+        [
+            "kalman",
+            "cubature-5",
+            "unscented",
+            "converted",
+            "fixed-gain",
+            "fixed-gain-unmixed"
+        ]
+    );
+    for (id, name, equation) in [
+        (LINEAR, "gain", "zhu2016 (51), liu2017 (20)"),
+        (LINEAR, "cross_covariance", "zhu2016 (48), liu2017 (19)"),
+        (CONVERTED, "innovation", "sustika2015 (18)"),
+        (CONVERTED, "predicted_measurement", "sustika2015 (18)"),
+        (CONVERTED, "innovation_covariance", "sustika2015 (16)"),
+        (CONVERTED, "cross_covariance", "sustika2015 (17)"),
+        (CONVERTED, "gain", "sustika2015 (17)"),
+        (CONVERTED, "updated.mean", "zhu2016 (52), liu2017 (20)"),
+        (FIXED, "innovation_covariance", "derbez2000 (4), given"),
+        (FIXED, "gain", "derbez2000, section 3, given"),
+        (unmixed, "updated.mean", "derbez2000, section 3"),
+        (FIXED, "mixed.mean", "zhu2016 (55), liu2017 (12)"),
+    ] {
+        assert_eq!(filter(id).equation(quantity(name)), equation, "{id}, {name}");
+    }
+}
+
 // Schemas
 
 #[test]
@@ -852,59 +905,6 @@ fn the_schemas_take_what_is_published_and_refuse_what_is_spoilt() {
     }
 }
 
-// Traces
-
-/// JSON → trace → JSON, and JSON → trace → long CSV → trace: exact, over every published case.
-#[test]
-fn reading_and_writing_a_trace_is_the_identity() {
-    let mut read = 0;
-    for case in all() {
-        let Expected::Trace(trace) = &case.expected else {
-            continue;
-        };
-        let id = &case.problem.id;
-        let steps = parsed(case.trace_text)["steps"].clone();
-        let again = Trace::from_json(&steps, trace.dimensions).unwrap();
-        assert_eq!(&again, trace, "{id}");
-        assert!(Value::Array(trace.steps_as_json()) == steps, "{id}: JSON");
-        for text in [
-            csv::write(id, trace, "", |_, _| String::new()),
-            long_csv(&case.problem, trace, case.trace_text),
-        ] {
-            assert!(
-                csv::read(&text, id, trace.dimensions).as_ref() == Ok(trace),
-                "{id}: CSV"
-            );
-        }
-        read += 1;
-    }
-    assert!(read > 90, "{read}");
-}
-
-/// A trace of one mode, two states and one measurement, one step.
-const SMALL: Dimensions = Dimensions {
-    n: 2,
-    m: 1,
-    r: 1,
-    steps: 2,
-};
-
-/// The same step in the ways of different writers.
-#[test]
-fn answers_are_read_with_patience() {
-    let plain = json!([{ "step": 1, "modes": [{ "mixing_probabilities": [1.0], "gain": [[0.5], [0.25]], "innovation_covariance": [[4.0]],
-        "mixed": { "mean": [1.0, 2.0], "covariance": [[1.0, 0.5], [0.5, 2.0]] }, "log_likelihood": -1.5 }],
-        "mode_probabilities": [1.0] }]);
-    let expected = Trace::from_json(&plain, SMALL).unwrap();
-    assert_eq!(expected.count(), 7);
-    let change = |pointer: &str, new: Value| {
-        let mut changed = plain.clone();
-        *changed.pointer_mut(pointer).unwrap() = new;
-        changed
-    };
-    for (what, patient) in [
-        (
-            "a scalar for a list of one",
 /// The schema of certificates takes every published one and a counterexample, and refuses what the reader refuses: a key that is missing
 /// or not known, a value of another kind, a letter that names no filter, a form that is not 3 × 3, and more than a certificate may have.
 #[test]
@@ -983,6 +983,59 @@ fn with_digest(value: &Value) -> String {
     value.to_string()
 }
 
+// Traces
+
+/// JSON → trace → JSON, and JSON → trace → long CSV → trace: exact, over every published case.
+#[test]
+fn reading_and_writing_a_trace_is_the_identity() {
+    let mut read = 0;
+    for case in all() {
+        let Expected::Trace(trace) = &case.expected else {
+            continue;
+        };
+        let id = &case.problem.id;
+        let steps = parsed(case.trace_text)["steps"].clone();
+        let again = Trace::from_json(&steps, trace.dimensions).unwrap();
+        assert_eq!(&again, trace, "{id}");
+        assert!(Value::Array(trace.steps_as_json()) == steps, "{id}: JSON");
+        for text in [
+            csv::write(id, trace, "", |_, _| String::new()),
+            long_csv(&case.problem, trace, case.trace_text),
+        ] {
+            assert!(
+                csv::read(&text, id, trace.dimensions).as_ref() == Ok(trace),
+                "{id}: CSV"
+            );
+        }
+        read += 1;
+    }
+    assert!(read > 90, "{read}");
+}
+
+/// A trace of one mode, two states and one measurement, one step.
+const SMALL: Dimensions = Dimensions {
+    n: 2,
+    m: 1,
+    r: 1,
+    steps: 2,
+};
+
+/// The same step in the ways of different writers.
+#[test]
+fn answers_are_read_with_patience() {
+    let plain = json!([{ "step": 1, "modes": [{ "mixing_probabilities": [1.0], "gain": [[0.5], [0.25]], "innovation_covariance": [[4.0]],
+        "mixed": { "mean": [1.0, 2.0], "covariance": [[1.0, 0.5], [0.5, 2.0]] }, "log_likelihood": -1.5 }],
+        "mode_probabilities": [1.0] }]);
+    let expected = Trace::from_json(&plain, SMALL).unwrap();
+    assert_eq!(expected.count(), 7);
+    let change = |pointer: &str, new: Value| {
+        let mut changed = plain.clone();
+        *changed.pointer_mut(pointer).unwrap() = new;
+        changed
+    };
+    for (what, patient) in [
+        (
+            "a scalar for a list of one",
             change("/0/mode_probabilities", json!(1.0)),
         ),
         (
@@ -1051,15 +1104,20 @@ fn what_is_not_finite_is_read_as_such() {
         let trace = Trace::from_json(&read_json(&one).unwrap()["steps"], SMALL).unwrap();
         let mean = trace.get(1, quantity("predicted.mean"), 0).unwrap();
         assert!(
-            (mean[0] - 1.5).abs() < f64::MIN_POSITIVE && !mean[1].is_finite(),
+            (mean[0] - 1.5).abs() < f64::MIN_POSITIVE && mean[1].is_nan(),
             "{word}: {mean:?}"
         );
+        // The first alone does not stand for all.
+        let first = one.replace(&format!("[1.5, {word}]"), &format!("[{word}, 1.5]"));
+        let trace = Trace::from_json(&read_json(&first).unwrap()["steps"], SMALL).unwrap();
+        let mean = trace.get(1, quantity("predicted.mean"), 0).unwrap();
+        assert!(mean[0].is_nan() && mean[1].is_finite(), "{word}: {mean:?}");
         // One for a whole matrix.
         let whole = format!("[{{\"step\":2,\"combined\":{{\"covariance\":{word}}}}}]");
         let trace = Trace::from_json(&read_json(&whole).unwrap(), SMALL).unwrap();
         let covariance = trace.get(2, quantity("combined.covariance"), 0).unwrap();
         assert!(
-            covariance.len() == 4 && covariance.iter().all(|value| !value.is_finite()),
+            covariance.len() == 4 && covariance.iter().all(|value| value.is_nan()),
             "{word}"
         );
         let line = format!(
@@ -1070,7 +1128,7 @@ fn what_is_not_finite_is_read_as_such() {
         if word != "null" {
             let trace = csv::read(&line, "x", SMALL).unwrap();
             assert!(
-                !trace.get(1, quantity("mode_probabilities"), 0).unwrap()[0].is_finite(),
+                trace.get(1, quantity("mode_probabilities"), 0).unwrap()[0].is_nan(),
                 "{line}"
             );
         }
@@ -1192,9 +1250,17 @@ fn a_long_csv_is_read_with_patience() {
         plain.replace("x,1", "\"x\",1.0"),
         plain.replace("-2", "-2.0e+0"),
         plain.replacen("x,1,,combined.mean,1,,0.5\n", "", 1) + "x,1,,combined.mean,1,1,0.5\n",
+        // A value of all modes has no mode, and a vector no column, whatever stands there.
+        plain.replacen("x,1,,combined.mean,1,,0.5\n", "", 1) + "x,1,7,combined.mean,1,9,0.5\n",
     ] {
         assert_eq!(csv::read(&patient, "x", SMALL), Ok(expected.clone()), "{patient:?}");
     }
+    let scalar = |row: &str| {
+        let text = format!("{}\nx,1,1,log_likelihood,{row},,-1.5\n", csv::HEADER);
+        csv::read(&text, "x", SMALL)
+    };
+    assert_eq!(scalar("7"), scalar(""), "a scalar has no row");
+    assert_eq!(scalar("").map(|trace| trace.count()), Ok(1));
     // An id is written so that it is read again, whatever it is.
     for id in ["a,b", "a\"b\"", "a\nb"] {
         let text = csv::write(id, &expected, "", |_, _| String::new());
@@ -1310,6 +1376,56 @@ fn every_case_is_proven_again() {
 }
 
 /// The proof notices one digit of any line of a trace, be it value, scale or noise.
+/// The digits that an enclosure has left are told in the unit of its value: in units of 2⁻⁴⁰ m every width is 2⁴⁰ times as large, and so is
+/// every unit.
+#[test]
+fn the_digits_that_are_left_do_not_depend_on_the_units() {
+    let plain = value_of(LINEAR);
+    let mut scaled = plain.clone();
+    let times = |value: &mut Value, factor: f64| {
+        let product = value.as_f64().unwrap() * factor;
+        *value = json!(product);
+    };
+    let unit = 2.0_f64.powi(40);
+    for pointer in pointers(&plain)
+        .iter()
+        .filter(|pointer| plain.pointer(pointer).unwrap().is_number())
+    {
+        let is_in = |words: &[&str]| words.iter().any(|word| pointer.contains(word));
+        if is_in(&["/mean/", "/z/"]) {
+            times(scaled.pointer_mut(pointer).unwrap(), unit);
+        } else if is_in(&["/Q/", "/R/", "/covariance/"]) {
+            times(scaled.pointer_mut(pointer).unwrap(), unit * unit);
+        }
+    }
+    let digits = |problem: &Value| {
+        let problem = ProblemFile::read(&problem.to_string()).unwrap();
+        let certified = certify(&problem).unwrap();
+        (certified.digits, certified.bits)
+    };
+    assert_eq!(digits(&scaled), digits(&plain));
+    assert!(digits(&plain).0 > 50);
+}
+
+/// A target on the x-axis that is as uncertain to the left as to the right: its bearing is expected to be zero, as a sum of irrational
+/// numbers of which no number of digits shows it. It is certified as zero, in doubles and in decimals.
+#[test]
+fn what_is_zero_by_symmetry_is_certified_as_zero() {
+    let mut problem = value_of("rule.cubature-3.n2");
+    let diagonal = |a: f64, b: f64| json!([[a, 0.0], [0.0, b]]);
+    problem["measurement"]["sensor"] = json!([0.0, 0.0]);
+    problem["modes"][0]["F"] = diagonal(1.0, 1.0);
+    problem["modes"][0]["Q"] = diagonal(2.0, 3.0);
+    problem["initial"]["modes"][0] = json!({ "mean": [50.0, 0.0], "covariance": diagonal(7.0, 5.0) });
+    let problem = ProblemFile::read(&problem.to_string()).unwrap();
+    let expected = (1, quantity("predicted_measurement"), 0);
+    let certified = certify(&problem).unwrap().trace;
+    let numbers = certified.get(expected.0, expected.1, expected.2).unwrap();
+    assert!(numbers[0] > 50.0 && numbers[1].to_bits() == 0, "{numbers:?}");
+    let (decimals, _) = certified_decimals(&problem, 20).unwrap();
+    assert_eq!(decimals.get(expected.0, expected.1, expected.2).unwrap()[1], "0");
+}
+
 #[test]
 fn a_case_with_another_digit_is_not_proven() {
     let good = of("update.kalman");
@@ -1602,6 +1718,18 @@ fn against_schema(value: &Value, schema: &Value, root: &Value, place: &str) -> R
             "minimum" => number.is_none_or(|number| number >= rule.as_f64().unwrap()),
             "exclusiveMinimum" => number.is_none_or(|number| number > rule.as_f64().unwrap()),
             "required" => !value.is_object() || list(rule).iter().all(|key| object.contains_key(key.as_str().unwrap())),
+            "minLength" => value
+                .as_str()
+                .is_none_or(|text| text.chars().count() as u64 >= rule.as_u64().unwrap()),
+            "maxLength" => value
+                .as_str()
+                .is_none_or(|text| text.chars().count() as u64 <= rule.as_u64().unwrap()),
+            "prefixItems" => {
+                for (i, (item, rule)) in value.as_array().into_iter().flatten().zip(list(rule)).enumerate() {
+                    against_schema(item, rule, root, &format!("{place}[{i}]"))?;
+                }
+                true
+            }
             "minItems" => value
                 .as_array()
                 .is_none_or(|items| items.len() as u64 >= rule.as_u64().unwrap()),
@@ -1662,15 +1790,3 @@ fn is_of_type(value: &Value, rule: &Value) -> bool {
 fn list(value: &Value) -> &Vec<Value> {
     value.as_array().unwrap()
 }
-            "minLength" => value
-                .as_str()
-                .is_none_or(|text| text.chars().count() as u64 >= rule.as_u64().unwrap()),
-            "maxLength" => value
-                .as_str()
-                .is_none_or(|text| text.chars().count() as u64 <= rule.as_u64().unwrap()),
-            "prefixItems" => {
-                for (i, (item, rule)) in value.as_array().into_iter().flatten().zip(list(rule)).enumerate() {
-                    against_schema(item, rule, root, &format!("{place}[{i}]"))?;
-                }
-                true
-            }
