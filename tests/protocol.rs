@@ -159,6 +159,48 @@ fn a_program_that_closes_its_output_and_goes_on_is_stopped() {
     assert!(start.elapsed() < Duration::from_secs(8));
 }
 
+/// Its exit status is waited for a moment: a program may close its output first.
+#[test]
+fn a_program_that_closes_its_output_and_ends_a_moment_later_is_reported_with_its_status() {
+    assert_eq!(
+        refused("exec 1>&-; sleep 0.1; exit 3"),
+        "the program ended (exit status: 3)"
+    );
+}
+
+/// Of what a program complains the end is kept, which says why it ended: a thousand bytes, and no half letter.
+#[test]
+fn of_a_long_complaint_the_end_is_kept() {
+    let sentence = refused(
+        "i=0; while [ $i -lt 400 ]; do printf 'täglich ' >&2; i=$((i+1)); done; printf 'and then it ended' >&2; exit 1",
+    );
+    let complaint = sentence.split_once(":\n").unwrap().1;
+    assert!(complaint.ends_with("täglich and then it ended"), "{complaint}");
+    assert!((990..=1000).contains(&complaint.len()), "{}", complaint.len());
+    assert!(!complaint.contains('\u{fffd}'));
+}
+
+/// Who drops a program without stopping it, because a test failed, say, leaves no process behind.
+#[test]
+fn a_dropped_program_is_ended() {
+    let answers = Answers::new("dropped");
+    let file = answers.folder.join("pid");
+    let mut process = script(&format!("echo $$ > '{}'; {READY} exec sleep 20", file.display()));
+    process.start().unwrap();
+    let pid = std::fs::read_to_string(&file).unwrap().trim().to_owned();
+    let is_there = || {
+        Command::new("/bin/kill")
+            .args(["-0", &pid])
+            .output()
+            .unwrap()
+            .status
+            .success()
+    };
+    assert!(is_there());
+    drop(process);
+    assert!(!is_there(), "process {pid} goes on");
+}
+
 #[test]
 fn a_program_that_does_not_read_is_stopped_in_time() {
     // The longest problem is more than a pipe holds.
@@ -318,6 +360,11 @@ fn what_is_said_after_the_end_is_remarked_upon() {
         report.remarks,
         ["said more than it was asked for: {\"type\":\"answer\"}"]
     );
+    // Of many remarks a hundred are kept.
+    let many = "i=0; while [ $i -lt 150 ]; do echo \"{\\\"number\\\":$i}\"; i=$((i+1)); done; exit 0";
+    let report = verdict(&format!("{} {many}", answers.script(&[])));
+    assert_eq!(report.remarks.len(), 100);
+    assert_eq!(report.remarks[99], "said more than it was asked for: {\"number\":99}");
     // Without end: no more than is kept, and not for ever.
     let start = Instant::now();
     let report = verdict(&format!("{} exec yes '{{}}'", answers.script(&[])));
@@ -648,6 +695,9 @@ fn answers_in_files_are_judged_like_those_of_a_program() {
     std::fs::remove_file(folder.join("update.cubature-3.json")).unwrap();
     std::fs::write(folder.join("update.cubature-3.csv"), csv).unwrap();
     let ready = "{\"name\":\"from files\",\"precision\":\"double\",\"echo\":[321,754]}";
+    // A folder that does not introduce itself is called by its name.
+    let nameless = Folder { path: folder.clone() }.start().unwrap();
+    assert_eq!(nameless.name, folder.display().to_string());
     std::fs::write(folder.join("ready.json"), ready).unwrap();
     let report = verdict_on(&mut Folder { path: folder.clone() }, &THREE).unwrap();
     assert_eq!(report.ready.name, "from files");

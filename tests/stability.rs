@@ -911,8 +911,14 @@ fn a_certificate_that_is_none_gets_a_sentence() {
         constant_acceleration: "5".to_owned(),
     };
     for (wrong, reason) in [
-        (noises("0", "1", "1"), "`interval` is 0"),
-        (noises("1", "-1", "1"), "`measurement` is -1"),
+        (
+            noises("0", "1", "1"),
+            "`interval` is 0: it must be positive, since the filters need a time",
+        ),
+        (
+            noises("1", "-1", "1"),
+            "since without measurement noise the innovation is not weighed",
+        ),
         (noises("1", "1", "0"), "there is no steady state that stabilises"),
         (noises("1", "1e300", "1"), "is its unit right"),
         (noises("1e-30", "1", "1"), "is its unit right"),

@@ -16,7 +16,7 @@ use immaculate::number::Enclosure;
 use immaculate::oracle::run::Triangle;
 use immaculate::oracle::setup::Setup;
 use immaculate::oracle::trace::Trace;
-use immaculate::oracle::variant::{Kind, Variant, apply, catalogue, find, read};
+use immaculate::oracle::variant::{Applies, Kind, Variant, apply, catalogue, find, read};
 use immaculate::rule::{Rule, RuleName, unscented::unscented_in};
 use nalgebra::{SMatrix, SVector};
 use std::collections::BTreeSet;
@@ -46,6 +46,33 @@ fn the_two_halves_of_the_catalogue_agree() {
     }
     assert!(!apply("no-such-variant", &mut linear(3)));
     assert_eq!(find("no-such-variant"), None);
+}
+
+/// Exact: in the equation of its quantity, and, where it is another in filters that convert, in that one; by hand for one that has both.
+#[test]
+fn a_variant_is_made_in_the_equations_that_its_row_names() {
+    let made_in = |variant: &Variant| {
+        Quantity::ALL
+            .into_iter()
+            .filter(|quantity| variant.is_made_in(*quantity))
+            .collect()
+    };
+    for variant in catalogue() {
+        let named: BTreeSet<Quantity> = variant.converted.into_iter().chain([variant.quantity]).collect();
+        let made: BTreeSet<Quantity> = made_in(variant);
+        assert_eq!(made, named, "{}", variant.id);
+        assert_eq!(serde_json::json!(variant.kind), variant.kind.name());
+    }
+    let both = find("measurement-noise-squared").unwrap();
+    let expected = [Quantity::ConvertedMeasurement, Quantity::InnovationCovariance];
+    assert_eq!(made_in(both), BTreeSet::from(expected));
+    let quantity_of = |conversions| {
+        both.quantity_in(Scope {
+            covariances: true,
+            conversions,
+        })
+    };
+    assert_eq!([true, false].map(quantity_of), expected);
 }
 
 #[test]
@@ -174,6 +201,33 @@ fn a_variant_changes_nothing_where_it_does_not_apply() {
         }
     }
     assert_eq!(left_alone.len(), 12, "each limit was met: {left_alone:?}");
+}
+
+/// Exact, by hand: the words for where a variant can make a difference, in filters of each kind.
+#[test]
+fn where_a_variant_applies_is_what_its_word_says() {
+    let words = |is_met: &dyn Fn(Applies) -> bool| -> BTreeSet<&str> {
+        let all = catalogue().iter().map(|variant| variant.applies);
+        all.filter(|applies| is_met(*applies)).map(Applies::name).collect()
+    };
+    let everywhere = ["all", "missed", "several modes"];
+    let kalman = ["kalman", "covariances"];
+    let dimensions = ["embedded motion", "unequal dimensions"];
+    let of = |setup: &Setup<f64, 4, 2>| words(&|applies| applies.to(setup));
+    let expected = |more: &[&[&'static str]]| everywhere.into_iter().chain(more.concat()).collect::<BTreeSet<_>>();
+    assert_eq!(of(&linear(3)), expected(&[&kalman]));
+    assert_eq!(of(&embedded()), expected(&[&kalman, &dimensions[..1]]));
+    assert_eq!(of(&unequal(embedded())), expected(&[&kalman, &dimensions]));
+    assert_eq!(
+        of(&polar(RULE)),
+        expected(&[&["points", "covariances", "angles", "bearings"]])
+    );
+    assert_eq!(of(&fixed(&Equations::fixed_gain())), expected(&[&["fixed gains"]]));
+    let of_converted = expected(&[&kalman, &dimensions, &["conversions", "bearings"]]);
+    assert_eq!(of(&converted(Conversion::Standard)), of_converted);
+    let mut one = linear(1);
+    one.measurements[2] = one.measurements[1];
+    assert_eq!(of(&one), BTreeSet::from(["all", "kalman", "covariances"]));
 }
 
 #[test]

@@ -279,6 +279,7 @@ impl Quantity {
                 Now(CombinedPredictionMean),
             ],
             PredictedMeasurement => &[Now(PredictedMean), Now(PredictedCovariance)],
+            // What was measured alone. (By the convention `at-prediction` R^c is of the combined prediction instead.)
             ConvertedMeasurement | ConvertedCovariance => &[],
             Innovation => &[Now(PredictedMeasurement), Now(ConvertedMeasurement)],
             InnovationCovariance => &[

@@ -127,7 +127,7 @@ impl Conversion {
     /// Evidence: as [`converted_covariance`], [`additive_variances`], [`multiplicative_variances`] and [`modified_unbiased_variances`].
     pub fn covariance<T: Real>(self, range: &T, bearing: &T, range_variance: &T, bearing_variance: &T) -> Matrix2<T> {
         let squared_range = range.clone() * range.clone();
-        let w = attenuation(bearing_variance);
+        let w = attenuation(bearing_variance); // for the standard one, too: the noise of published cases was drawn with it
         let variances = self.variances(&squared_range, range_variance, bearing_variance, &w);
         in_the_plane(&variances, &bearing.cos(), &bearing.sin())
     }
