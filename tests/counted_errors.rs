@@ -317,6 +317,41 @@ fn a_radius_is_rounded_up_by_a_unit_of_its_thirty_bits_at_most() {
 }
 
 #[test]
+fn a_root_of_a_ball_that_comes_near_zero_holds_both_ends() {
+    // Squares, so that no rounding of the middle hides a radius that is too small; and from nearly all of the number down to little of it.
+    let parts = (1..=20).flat_map(|k| {
+        let little = power(-k);
+        [
+            Rational::one() - &little,
+            &little * (Rational::one() - power(-20)),
+            little,
+        ]
+    });
+    for (part, bits) in parts.flat_map(|part| [24, 60].map(|bits| (part.clone(), bits))) {
+        for middle in [1.0, 4.0, 0.25, 9.0, 12.25, 2.0_f64.powi(40)] {
+            let (x, radius) = (
+                Rational::from_f64(middle),
+                (part.clone() * Rational::from_f64(middle)).to_f64(),
+            );
+            Enclosure::with_precision(bits, || {
+                let (ball, r) = (Enclosure::around(middle, radius), Rational::from_f64(radius));
+                let root = ball.sqrt();
+                assert!(root.is_decided(), "{ball}");
+                let (lower, upper) = (root.lower(), root.upper());
+                assert!(!lower.is_positive() || lower.pow(2) <= &x - &r, "√({ball}) is {root}");
+                assert!(upper.pow(2) >= &x + &r, "√({ball}) is {root}");
+                // And no more than twice as wide as the lower end demands: r/√x against r/(√x + √(x − r)).
+                let demanded = Rational::from_f64((middle.sqrt() - (middle - radius).max(0.0).sqrt()) * 1.000_001);
+                assert!(
+                    (&upper - &lower) / Rational::integer(2) <= demanded * Rational::integer(2),
+                    "√({ball}) is {root}"
+                );
+            });
+        }
+    }
+}
+
+#[test]
 fn an_exponential_of_a_wide_ball_is_no_wider_than_its_bound() {
     // e^(x ± ρ) within eˣ (1 ± 2ᵏ), k = ⌊3ρ/2⌋ + 1: e^ρ ≤ 2^(3ρ/2), and one more for what is rounded.
     Enclosure::with_precision(64, || {

@@ -205,12 +205,15 @@ impl Draw {
         }
     }
 
-    /// A ball around a double: a point, a narrow one, or a wide one that can hold zero.
+    /// A ball around a double: a point, a narrow one, or a wide one that comes near zero or holds it.
     fn ball_around(&mut self, middle: f64) -> Enclosure {
         match self.below(3) {
             0 => Enclosure::exact(middle),
             1 => Enclosure::around(middle, (middle * power_of_two(-20) * self.double(30, 0)).abs()),
-            _ => Enclosure::around(middle, (middle * self.double(30, 1)).abs()),
+            _ => {
+                let exponent = i32::from(self.below(2) == 0);
+                Enclosure::around(middle, (middle * self.double(30, exponent)).abs())
+            }
         }
     }
 
@@ -977,6 +980,11 @@ fn the_double_of_an_enclosure_is_the_nearest_one() {
         assert_eq!(Enclosure::around(0.0, power_of_two(-1074)).to_f64(), None);
         assert_eq!(Enclosure::around(0.0, power_of_two(-1074) / 2.0).to_f64(), Some(0.0));
         assert_eq!(Enclosure::exact(-0.0).to_f64().map(f64::to_bits), Some(0));
+        // Half of the least double, from either side: the even one is zero, and has no sign.
+        let half_of_least = Enclosure::exact(power_of_two(-537)) * Enclosure::exact(power_of_two(-538));
+        for tie in [half_of_least.clone(), -half_of_least] {
+            assert_eq!(tie.to_f64().map(f64::to_bits), Some(0));
+        }
         let largest = Enclosure::exact(f64::MAX);
         assert_eq!(largest.to_f64(), Some(f64::MAX));
         let half = Enclosure::exact(power_of_two(969));

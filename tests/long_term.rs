@@ -638,8 +638,8 @@ fn the_joint_errors_solve_their_equations() {
 }
 
 /// Property: where modes never change, each filter is by itself, the likelier one becomes certain, and the long-term error is its own.
-/// Likelihoods and errors are closed forms of the steady filters here, so that the acceleration at which the other filter is the likelier one
-/// is known; the algorithm is asked on both sides of it.
+/// Likelihoods and errors are closed forms of the steady filters here, so that the acceleration at which the other filter is the likelier
+/// one is known; the algorithm is asked on both sides of it.
 #[test]
 fn without_changes_of_mode_the_likelier_filter_stays_with_its_own_error() {
     for (interval, variance) in [(1.0, 0.05), (2.0, 0.5), (3.0, 0.05)] {
@@ -723,8 +723,8 @@ fn without_changes_of_mode_the_likelier_filter_stays_with_its_own_error() {
     }
 }
 
-/// Figures, and no proof: what the three forms come to where both modes have a share, and after how many rounds. The laws above hold where one
-/// mode is certain; between, what each form says is its own, and a difference here says that the algorithm is another.
+/// Figures, and no proof: what the three forms come to where both modes have a share, and after how many rounds. The laws above hold where
+/// one mode is certain; between, what each form says is its own, and a difference here says that the algorithm is another.
 #[test]
 fn predictions_between_two_modes_are_these() {
     use Algorithm::{Corrected, Printed, Reindexed};
@@ -752,8 +752,8 @@ fn predictions_between_two_modes_are_these() {
     }
 }
 
-/// Property: a sensor that is always off by twice its deviation moves the estimate by as much, and the error of a filter that is locked into
-/// constant velocity with it: e = m − [2√R, 0, 0]ᵀ, with the lag m in closed form.
+/// Property: a sensor that is always off by twice its deviation moves the estimate by as much, and the error of a filter that is locked
+/// into constant velocity with it: e = m − [2√R, 0, 0]ᵀ, with the lag m in closed form.
 #[test]
 fn a_sensor_that_is_off_moves_the_simulated_error_by_as_much() {
     let locked = Setting {

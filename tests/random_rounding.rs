@@ -168,8 +168,8 @@ fn infinities_and_values_that_are_no_numbers_stay_what_they_are() {
     });
 }
 
-/// The first numbers of SplitMix64 from the states 0 and 1234567, as its users publish them for comparison; the noise is their upper halves,
-/// which a perturbation of a whole unit shows bit by bit.
+/// The first numbers of SplitMix64 from the states 0 and 1234567, as its users publish them for comparison; the noise is their upper
+/// halves, which a perturbation of a whole unit shows bit by bit.
 #[test]
 fn the_noise_is_that_of_the_named_generator() {
     const KNOWN: [(u64, [u64; 5]); 2] = [

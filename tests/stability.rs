@@ -365,8 +365,8 @@ fn a_steady_state_is_proven_by_two_bounds() {
     }
 }
 
-/// Exact, and compared in doubles: U − L is 2ε W with the Lyapunov matrix W = A W Aᵀ + I of the closed loop between them, A = F(I − KH), and
-/// ε = 2^(−bits/2) of one more than the greatest entry.
+/// Exact, and compared in doubles: U − L is 2ε W with the Lyapunov matrix W = A W Aᵀ + I of the closed loop between them, A = F(I − KH),
+/// and ε = 2^(−bits/2) of one more than the greatest entry.
 #[test]
 fn the_bounds_of_a_steady_state_are_as_far_apart_as_is_said() {
     let t = rational("2");

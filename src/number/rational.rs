@@ -239,11 +239,7 @@ impl fmt::Debug for Rational {
 
 /// Whether a number is below, equal to or above zero.
 pub(super) fn sign_of(value: &BigRational) -> Ordering {
-    match value.numer().sign() {
-        Sign::Minus => Ordering::Less,
-        Sign::NoSign => Ordering::Equal,
-        Sign::Plus => Ordering::Greater,
-    }
+    value.numer().sign().cmp(&Sign::NoSign)
 }
 
 /// The double nearest to a number, ties to the even one.

@@ -49,7 +49,8 @@ impl<S: Simulation> Experiment<S> {
     pub fn stays_within(&self, limit: f64) -> (bool, String) {
         let comparison = self.comparison();
         let mut bounded = true;
-        let mut words = String::from("Mean NEES (4 expected) and greatest position error of any run:");
+        let (expected, _) = self.scenario.components();
+        let mut words = format!("Mean NEES ({expected} expected) and greatest position error of any run:");
         for (c, filter) in self.scenario.filters().iter().enumerate() {
             let (nees, _) = comparison.consistency(c);
             let greatest = comparison.greatest_position_error(c);

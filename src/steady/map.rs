@@ -115,8 +115,8 @@ fn power_of_ten(exponent: f64) -> f64 {
     Real::exp(&(exponent * Real::ln(&10.0)))
 }
 
-/// A rational with three significant digits of the lesser of its distances from zero and from one; with fewer, or none, where these would be
-/// beyond the 22nd decimal, as far as a power of ten is a double.
+/// A rational with three significant digits of the lesser of its distances from zero and from one; with fewer, or none, where these would
+/// be beyond the 22nd decimal, as far as a power of ten is a double.
 fn short(root: f64) -> Rational {
     let distance = root.min(1.0 - root);
     let mut scale = 100.0;

@@ -5,7 +5,7 @@
 
 use super::bound::Bound;
 use crate::number::Rational;
-use num_bigint::{BigInt, BigUint, Sign};
+use num_bigint::{BigInt, BigUint};
 use num_integer::Integer;
 use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive, Zero};
@@ -96,7 +96,7 @@ impl Dyadic {
     /// The exact order. Numbers whose leading bits stand in different places need no shift, and those whose leading bits
     /// stand in the same place only one as long as a mantissa.
     pub(super) fn compare(&self, other: &Self) -> Ordering {
-        let order = sign(&self.mantissa).cmp(&sign(&other.mantissa));
+        let order = self.mantissa.sign().cmp(&other.mantissa.sign());
         if order != Ordering::Equal || self.is_zero() {
             return order;
         }
@@ -295,13 +295,4 @@ fn power_of_two(k: i64) -> f64 {
         (k + 1023).unsigned_abs() << 52
     };
     f64::from_bits(bits)
-}
-
-/// −1, 0 or 1.
-fn sign(mantissa: &BigInt) -> i8 {
-    match mantissa.sign() {
-        Sign::Minus => -1,
-        Sign::NoSign => 0,
-        Sign::Plus => 1,
-    }
 }

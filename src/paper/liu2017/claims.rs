@@ -85,7 +85,8 @@ fn better_than_others(
     (all_of(&verdicts), evidence)
 }
 
-fn better_accuracy(s: &Specification, printed: &Experiment) -> Judgement {
+/// The errors of the proposed filter beside all others.
+pub fn better_accuracy(s: &Specification, printed: &Experiment) -> Judgement {
     let quantities = [Quantity::Position, Quantity::Velocity];
     let (verdict, mut evidence) = better_than_others(printed, &quantities, &|_| true);
     let rows = s.tables[0].rows.iter();
@@ -111,7 +112,8 @@ fn different_delays(printed: &Experiment, a: usize, b: usize) -> (usize, usize) 
     (pairs.iter().filter(|(a, b)| a != b).count(), pairs.len())
 }
 
-fn quicker_switching(s: &Specification, printed: &Experiment) -> Judgement {
+/// Its delays beside all others.
+pub fn quicker_switching(s: &Specification, printed: &Experiment) -> Judgement {
     let own = mean_delay(printed, IMM5THSSRCKF);
     let mut evidence = format!("Mean delay of IMM5thSSRCKF {own:.3} s;");
     let mut quicker = true;
@@ -143,7 +145,8 @@ fn end_sentence(evidence: &mut String) {
     }
 }
 
-fn fifth_degree_switching(s: &Specification, printed: &Experiment) -> Judgement {
+/// The delays of both fifth-degree filters beside the others.
+pub fn fifth_degree_switching(s: &Specification, printed: &Experiment) -> Judgement {
     let comparison = printed.comparison();
     let delays = [IMMUKF, IMMCKF, IMM5THCKF, IMM5THSSRCKF].map(|c| mean_delay(printed, c));
     let among = comparison.greatest_probability_difference(IMM5THCKF, IMM5THSSRCKF);
@@ -161,13 +164,15 @@ fn fifth_degree_switching(s: &Specification, printed: &Experiment) -> Judgement 
     s.judgement("liu2017-fifth-degree-switching", verdict, evidence)
 }
 
-fn no_divergence(s: &Specification, printed: &Experiment) -> Judgement {
+/// Whether any run fails or goes far off.
+pub fn no_divergence(s: &Specification, printed: &Experiment) -> Judgement {
     // Diverged: further away than ten times the widest deviation of a measured position, 39.4 km · 7 mrad.
     let (bounded, evidence) = printed.stays_within(10.0 * 39_400.0 * BEARING_DEVIATION);
     s.judgement("liu2017-no-divergence", confirmed_if(bounded), evidence)
 }
 
-fn higher_accuracy_than_fifth_degree(s: &Specification, printed: &Experiment) -> Judgement {
+/// The two fifth-degree rules beside each other, by moments and in the scenario.
+pub fn higher_accuracy_than_fifth_degree(s: &Specification, printed: &Experiment) -> Judgement {
     let monomials = [
         [6, 0, 0, 0],
         [0, 0, 0, 6],
@@ -248,7 +253,8 @@ fn linear_imm_cannot(s: &Specification, printed: &Experiment, effort: Effort, pr
     s.judgement("liu2017-linear-imm-cannot", verdict, evidence)
 }
 
-fn outperforms_in_manoeuvres(s: &Specification, printed: &Experiment) -> Judgement {
+/// The errors of the proposed filter beside all others, in the turns.
+pub fn outperforms_in_manoeuvres(s: &Specification, printed: &Experiment) -> Judgement {
     let schedule = &printed.scenario.schedule;
     let turning = |k: usize| schedule[k] != Motion::Straight;
     let (verdict, mut evidence) = better_than_others(printed, &[Quantity::Position], &turning);
@@ -260,7 +266,8 @@ fn outperforms_in_manoeuvres(s: &Specification, printed: &Experiment) -> Judgeme
     )
 }
 
-fn constant_velocity(s: &Specification, printed: &Experiment) -> Judgement {
+/// The same on straight parts.
+pub fn constant_velocity(s: &Specification, printed: &Experiment) -> Judgement {
     let schedule = &printed.scenario.schedule;
     let straight = |k: usize| schedule[k] == Motion::Straight;
     let comparison = printed.comparison();

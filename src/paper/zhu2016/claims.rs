@@ -51,10 +51,7 @@ pub fn judge(effort: Effort, progress: Progress) -> Result<Vec<Judgement>, Inval
         let scenario = scenario(&Choices::of(parameter, alternative))?;
         Ok(Experiment::new(scenario, effort, progress))
     };
-    let mut printed = scenario(&Choices::default())?;
-    let kalman = kalman(&printed.contestants[IMM5CKF]);
-    printed.contestants.push(kalman);
-    let printed = Experiment::new(printed, effort, progress);
+    let printed = Experiment::new(with_kalman_filter()?, effort, progress);
     let single_models = [
         experiment("single-model", "constant-velocity")?,
         experiment("single-model", "coordinated-turn")?,
@@ -89,6 +86,18 @@ pub fn judge(effort: Effort, progress: Progress) -> Result<Vec<Judgement>, Inval
     ])
 }
 
+/// The printed scenario, and after its contestants a Kalman filter with the same modes.
+///
+/// # Errors
+///
+/// [`InvalidChoice`] never: nothing is chosen.
+pub fn with_kalman_filter() -> Result<Scenario, InvalidChoice> {
+    let mut printed = scenario(&Choices::default())?;
+    let kalman = kalman(&printed.contestants[IMM5CKF]);
+    printed.contestants.push(kalman);
+    Ok(printed)
+}
+
 /// The same modes with Kalman filters.
 fn kalman(contestant: &Contestant) -> Contestant {
     let mut kalman = contestant.clone();
@@ -112,7 +121,8 @@ fn distance_from_kalman(comparison: &Comparison) -> (f64, f64) {
     (greatest(estimates), greatest(probabilities))
 }
 
-fn linear_accuracy(s: &Specification, printed: &Experiment) -> Judgement {
+/// The three filters with points beside the Kalman filter.
+pub fn linear_accuracy(s: &Specification, printed: &Experiment) -> Judgement {
     let (estimates, probabilities) = distance_from_kalman(&printed.comparison());
     let evidence = format!(
         "Over all steps of {} runs no estimate of the three differs from the Kalman filter in the same cycle by more than {} (m, m/s) \
@@ -126,7 +136,8 @@ fn linear_accuracy(s: &Specification, printed: &Experiment) -> Judgement {
     s.judgement("zhu2016-linear-accuracy", verdict, evidence)
 }
 
-fn better_than_single_model(s: &Specification, experiments: &[Experiment; 3]) -> Judgement {
+/// The first filter beside the one of a single model, whichever that is.
+pub fn better_than_single_model(s: &Specification, experiments: &[Experiment; 3]) -> Judgement {
     let mut differences = Vec::new();
     let mut evidence = String::from("IMM5CKF minus single 5CKF, error of position:");
     for experiment in experiments {
@@ -149,7 +160,8 @@ fn better_than_single_model(s: &Specification, experiments: &[Experiment; 3]) ->
     s.judgement("zhu2016-better-than-single-model", verdict, evidence)
 }
 
-fn better_than_omtm(s: &Specification, printed: &Experiment) -> Judgement {
+/// The first filter beside a stand-in for one that the paper does not print.
+pub fn better_than_omtm(s: &Specification, printed: &Experiment) -> Judgement {
     let difference = printed.comparison().difference(IMM5CKF, STAND_IN, Quantity::Position);
     let evidence = format!(
         "The paper gives no equation of OMTM-IMM and neither does what could be obtained of its source. Against the stand-in of this \
@@ -159,7 +171,8 @@ fn better_than_omtm(s: &Specification, printed: &Experiment) -> Judgement {
     s.judgement("zhu2016-better-than-omtm", Verdict::NotReproducible, evidence)
 }
 
-fn captures_switches(s: &Specification, printed: &Experiment) -> Judgement {
+/// How late the first filter notices a change of motion.
+pub fn captures_switches(s: &Specification, printed: &Experiment) -> Judgement {
     let comparison = printed.comparison();
     let delays = comparison.delays(IMM5CKF);
     let missed: usize = delays.iter().flatten().filter(|delay| delay.is_none()).count();
@@ -181,7 +194,8 @@ fn delay_summary(delays: &[Option<usize>]) -> String {
     format!("{mean:.2} s (at most {greatest} s)")
 }
 
-fn switching_sensitivity(s: &Specification, printed: &Experiment) -> Judgement {
+/// Mode probabilities and delays of the three filters beside each other.
+pub fn switching_sensitivity(s: &Specification, printed: &Experiment) -> Judgement {
     let comparison = printed.comparison();
     let probabilities = [IMMCKF, IMMUKF].map(|other| comparison.greatest_probability_difference(IMM5CKF, other));
     let same_delays = [IMMCKF, IMMUKF]
@@ -201,7 +215,8 @@ fn switching_sensitivity(s: &Specification, printed: &Experiment) -> Judgement {
     s.judgement("zhu2016-switching-sensitivity", confirmed_if(!same_delays), evidence)
 }
 
-fn imm_beats_single_model(s: &Specification, experiments: &[Experiment; 3]) -> Judgement {
+/// The first filter beside those of one model, in turns and on straight parts.
+pub fn imm_beats_single_model(s: &Specification, experiments: &[Experiment; 3]) -> Judgement {
     let mut evidence = String::from("IMM5CKF minus the single filter, error of position:");
     let mut differences = Vec::new();
     for experiment in &experiments[..2] {
@@ -227,7 +242,8 @@ fn imm_beats_single_model(s: &Specification, experiments: &[Experiment; 3]) -> J
     s.judgement("zhu2016-imm-beats-single-model", verdict, evidence)
 }
 
-fn negative_weights_diverge(s: &Specification, printed: &Experiment) -> Judgement {
+/// Negative weights, and what they do in the scenario.
+pub fn negative_weights_diverge(s: &Specification, printed: &Experiment) -> Judgement {
     let negative: Vec<String> = (4..=8)
         .filter_map(|n| unscented::unscented(n, &Parameters::for_gaussian(n)).ok())
         .map(|rule| {
@@ -253,13 +269,15 @@ fn negative_weights_diverge(s: &Specification, printed: &Experiment) -> Judgemen
     )
 }
 
-fn no_divergence(s: &Specification, printed: &Experiment) -> Judgement {
+/// Whether any run fails or goes far off.
+pub fn no_divergence(s: &Specification, printed: &Experiment) -> Judgement {
     // Diverged: further away than ten times the deviation with which a run starts, √1000 m.
     let (bounded, evidence) = printed.stays_within(10.0 * 1000_f64.sqrt());
     s.judgement("zhu2016-no-divergence", confirmed_if(bounded), evidence)
 }
 
-fn single_model_worst(s: &Specification, experiments: &[Experiment; 3]) -> Judgement {
+/// The filter of one model beside all others.
+pub fn single_model_worst(s: &Specification, experiments: &[Experiment; 3]) -> Judgement {
     let mut differences = Vec::new();
     let mut evidence = String::from("Single 5CKF minus the worst of the others, error of position:");
     for experiment in experiments {
@@ -283,7 +301,8 @@ fn single_model_worst(s: &Specification, experiments: &[Experiment; 3]) -> Judge
     s.judgement("zhu2016-single-model-worst", all_below_zero(&differences), evidence)
 }
 
-fn nonlinear_filters_better_than_omtm(s: &Specification, printed: &Experiment) -> Judgement {
+/// Whether the three filters are anything but Kalman filters here.
+pub fn nonlinear_filters_better_than_omtm(s: &Specification, printed: &Experiment) -> Judgement {
     let (estimates, _) = distance_from_kalman(&printed.comparison());
     let evidence = format!(
         "On the printed, linear scenario each of the three equals the Kalman filter in the same cycle, to {} (m, m/s): whatever sets them \
@@ -294,7 +313,8 @@ fn nonlinear_filters_better_than_omtm(s: &Specification, printed: &Experiment) -
     s.judgement("zhu2016-nonlinear-filters-better-than-omtm", verdict, evidence)
 }
 
-fn columns_differ(s: &Specification, printed: &Experiment) -> Judgement {
+/// What the published columns differ by, beside what chance does.
+pub fn columns_differ(s: &Specification, printed: &Experiment) -> Judgement {
     // The premise, for n unknown: a rule of degree two or more is the Kalman filter on affine models.
     let n = crate::rule::sphere::every_dimension();
     let of = |value: i64| <crate::number::RationalFunction as crate::number::Field>::integer(value);
@@ -343,7 +363,8 @@ fn columns_differ(s: &Specification, printed: &Experiment) -> Judgement {
     s.judgement("zhu2016-columns-differ", proven_if(!premise), evidence)
 }
 
-fn columns_differ_range_bearing(s: &Specification, experiments: &[Experiment; 2]) -> Judgement {
+/// The same where range and bearing are measured.
+pub fn columns_differ_range_bearing(s: &Specification, experiments: &[Experiment; 2]) -> Judgement {
     let mut evidence = String::from("IMM5CKF over IMMCKF, error of position:");
     let mut greatest: f64 = 0.0;
     for experiment in experiments {
@@ -375,7 +396,8 @@ fn columns_differ_range_bearing(s: &Specification, experiments: &[Experiment; 2]
     s.judgement("zhu2016-columns-differ-range-bearing", verdict, evidence)
 }
 
-fn table_1_reachable(s: &Specification, printed: &Experiment) -> Judgement {
+/// The published errors beside what the printed noise can give.
+pub fn table_1_reachable(s: &Specification, printed: &Experiment) -> Judgement {
     let bound = |variance: f64| steady_bound(variance, super::ACCELERATION_VARIANCE);
     let [in_x, in_y] = super::MEASUREMENT_VARIANCES.map(bound);
     let comparison = printed.comparison();
@@ -422,7 +444,8 @@ fn steady_bound(variance: f64, acceleration_variance: f64) -> f64 {
     (variance + lag * lag).sqrt()
 }
 
-fn printed_weight(s: &Specification, printed: &Experiment) -> Judgement {
+/// A run with the weight as printed.
+pub fn printed_weight(s: &Specification, printed: &Experiment) -> Judgement {
     let n: Rational = Rational::new(4, 1);
     let sum = RuleName::FifthDegreePrinted
         .exact(4)
