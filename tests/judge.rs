@@ -293,6 +293,32 @@ fn an_error_that_follows_from_another_is_inherited() {
     assert_eq!(scene.judged((1, Q::CombinedMean, 0)).finding, Finding::Propagated);
 }
 
+/// A step that has no answer on the program's own values, since its S is negative, ends nothing where the program shows all that the next
+/// step needs: what is off there is at fault. Where any of it is hidden nothing more can be said.
+#[test]
+fn a_step_without_an_answer_is_passed_over_where_the_next_is_shown_its_start() {
+    let finding = |hidden: Option<Q>| {
+        let mut scene = Scene::new();
+        for j in 0..2 {
+            scene.shown.set(1, Q::InnovationCovariance, j, vec![-1.0]);
+        }
+        scene.shown.set(2, Q::PredictedMean, 0, vec![50.0]);
+        scene.hide(|place| place.0 == 1 && Some(place.1) == hidden);
+        let Judgement { values, failures } = scene.case().judge(&[]).unwrap();
+        assert!(
+            failures[0].starts_with("step 1, mode `walk`, zhu2016 (51)"),
+            "{failures:?}"
+        );
+        let place = (2, Q::PredictedMean, 0);
+        values.into_iter().find(|judged| judged.place == place).unwrap().finding
+    };
+    assert_eq!(finding(None), Finding::Fault);
+    assert_eq!(finding(Some(Q::CombinedMean)), Finding::Fault);
+    for needed in [Q::UpdatedMean, Q::UpdatedCovariance, Q::ModeProbabilities] {
+        assert_eq!(finding(Some(needed)), Finding::Undetermined, "{needed:?}");
+    }
+}
+
 // What explains a value
 
 /// An error of some ten thousand noises is far from none, though it is near enough to be looked at twice.
