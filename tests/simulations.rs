@@ -561,6 +561,65 @@ fn a_paper_is_found_by_its_key_and_simulates_what_it_prints_first() {
     );
 }
 
+/// Counted by hand in `spec/`: two scenarios of derbez2000 share some of their parameters, and each has others of its own.
+#[test]
+fn the_open_choices_of_a_scenario_are_those_of_its_own_parameters() {
+    for (paper, scenario, count, own, of_others) in [
+        (Paper::Derbez2000, "manoeuvres", 23, "turn-rate=9-left", "path=reversed"),
+        (
+            Paper::Derbez2000,
+            "acceleration",
+            13,
+            "path=reversed",
+            "turn-rate=9-left",
+        ),
+        (
+            Paper::Sustika2015,
+            "matched-straight",
+            19,
+            "truth=noise-free",
+            "window=printed",
+        ),
+        (
+            Paper::Sustika2015,
+            "matched-manoeuvring",
+            21,
+            "window=printed",
+            "window=toolbox",
+        ),
+    ] {
+        let chosen = Choices::of("scenario", scenario);
+        let open: Vec<String> = paper.open_choices(&chosen).iter().map(Choices::describe).collect();
+        assert_eq!(open.iter().collect::<BTreeSet<_>>().len(), open.len(), "each once");
+        assert_eq!(open.len(), count, "{scenario}: {open:?}");
+        assert!(
+            open.iter()
+                .all(|choices| choices.contains(&format!("scenario={scenario}")))
+        );
+        let has = |choice: &str| open.iter().any(|choices| choices.split(", ").any(|one| one == choice));
+        assert!(has(own) && !has(of_others), "{scenario}: {open:?}");
+    }
+    // The first scenario is meant where none is chosen; and no default is an open choice.
+    let count = |paper: Paper| paper.open_choices(&Choices::default()).len();
+    assert_eq!(Paper::ALL.map(count), [23, 19, 18, 13]);
+    // Of all scenarios together, and the scenarios themselves.
+    let all = |paper: Paper| paper.specification().single_alternatives().len();
+    assert_eq!(Paper::ALL.map(all), [26, 24, 18, 13]);
+    for paper in Paper::ALL {
+        let parameters = &paper.specification().parameters;
+        for choices in paper.specification().single_alternatives() {
+            let name = choices.parameters().next().unwrap();
+            let parameter = parameters.iter().find(|parameter| parameter.name == name).unwrap();
+            assert_ne!(
+                choices.chosen(name),
+                Some(parameter.default.as_str()),
+                "{}",
+                choices.describe()
+            );
+        }
+    }
+}
+
 #[test]
 fn choices_are_read_as_they_are_written_and_checked_against_the_paper() {
     let texts = ["pairing = unpaired".to_owned(), "runs=100".to_owned()];
