@@ -77,6 +77,10 @@ fn stability_proves_and_refutes() {
     assert_eq!(unstable["unmixed"]["verdict"], "stable");
     assert_eq!(unstable["steady"][0]["tracking_index"], "1.66666666667e-1");
     assert_eq!(unstable["mixed"]["certificate"]["proof"]["unstable"]["word"], "vva");
+    // What may be tried is what is asked for: these two need forms that remember.
+    let needs_memory = ["stability", "--roots", "4/5", "46/125"];
+    assert!(succeeds(&needs_memory).contains("MIXED     certified stable"));
+    assert!(succeeds(&[&needs_memory[..], &["--memory", "0"]].concat()).contains("MIXED     undecided"));
     let folder = temporary("certificates");
     std::fs::create_dir_all(&folder).unwrap();
     let path = folder.join("proof.json");
@@ -309,6 +313,9 @@ fn reproduce_sets_published_and_computed_figures_side_by_side() {
     let brief = json(&["reproduce", "liu2017", "--runs", "2", "--brief", "--json"]);
     assert_eq!(list(&brief["papers"]).len(), 1);
     assert!(list(&brief["papers"][0]["alternatives"]).is_empty());
+    let of_choices = "Each open choice by itself";
+    assert!(succeeds(&["reproduce", "zhu2016", "--runs", "2"]).contains(of_choices));
+    assert!(!succeeds(&["reproduce", "zhu2016", "--runs", "2", "--brief"]).contains(of_choices));
 }
 
 #[test]

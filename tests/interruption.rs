@@ -40,6 +40,30 @@ fn a_writer_that_never_ends() {
 }
 
 #[test]
+fn writers_of_one_process_do_not_meet() {
+    let folder = temporary("together");
+    // Long enough that one is at work while the others begin.
+    let content = |writer: usize| format!("{writer}\n").repeat(20_000);
+    std::thread::scope(|scope| {
+        for writer in 0..4 {
+            let (folder, content) = (&folder, &content);
+            scope.spawn(move || {
+                for round in 0..10 {
+                    file::write(&folder.join(format!("{writer}-{round}")), &content(writer)).unwrap();
+                }
+            });
+        }
+    });
+    for writer in 0..4 {
+        for round in 0..10 {
+            let read = std::fs::read_to_string(folder.join(format!("{writer}-{round}"))).unwrap();
+            assert!(read == content(writer), "{writer}, {round}");
+        }
+    }
+    assert_eq!(names(&folder).len(), 40);
+}
+
+#[test]
 fn a_file_whose_writer_is_killed_is_old_or_new() {
     let folder = temporary("killed");
     let place = folder.join("file");

@@ -774,9 +774,9 @@ fn the_words_of_the_page() {
 #[test]
 fn an_equation_in_the_book() {
     let chapter = book::html::chapter(Paper::Zhu2016).into_string();
-    // One as it is printed, one that is corrected, and one that is outside of steps.
+    // One as it is printed, one that is corrected, one that is outside of steps, and one whose evidence is that of another.
     let mut text = String::new();
-    for anchor in ["zhu2016-56", "zhu2016-24", "zhu2016-64"] {
+    for anchor in ["zhu2016-56", "zhu2016-24", "zhu2016-64", "zhu2016-14"] {
         let (_, section) = chapter.split_once(&format!("id=\"{anchor}\">")).unwrap();
         let section = section.split("<section class=\"equation\"").next().unwrap();
         let _ = writeln!(text, "{}", without_lines(&words_of(section)));
