@@ -400,6 +400,22 @@ fn a_doc_comment_is_split_into_its_parts() {
     assert_eq!(told, [("one", "exact"), ("two", all), ("three", all), ("four", "")]);
     assert_eq!(doc.evidence_of(), ["point"]);
     assert_eq!(Doc::read("No numbers — and a dash.").title, "No numbers — and a dash.");
+    // The sentence of an example and its code are one part, and what stands before it is another.
+    let example = Doc::read("Name.\n\nWhy: so.\n\nExample: by hand.\n\n```\nuse it;\n```\n\nErrata: none.");
+    let parts: Vec<_> = example
+        .parts
+        .iter()
+        .map(|part| (part.kind, part.text.as_str()))
+        .collect();
+    let both = "by hand.\n\n```\nuse it;\n```";
+    assert_eq!(
+        parts,
+        [
+            (PartKind::Derivation, "Why: so."),
+            (PartKind::Example, both),
+            (PartKind::Errata, "none.")
+        ]
+    );
 }
 
 #[test]
