@@ -768,6 +768,15 @@ fn the_words_of_the_page() {
     // Drawings and formulas have tests of their own, and so has the book.
     let (front, _) = page.split_once("<section class=\"book\"").unwrap();
     let (_, front) = front.split_once("<body>").unwrap();
+    // On a dark screen the drawings have the page's own ink, ground, grid and shade.
+    for name in ["ink", "paper", "grid", "shade"] {
+        for attribute in ["fill", "stroke"] {
+            assert!(
+                page.contains(&format!("{attribute}: var(--{name});")),
+                "{attribute} {name}"
+            );
+        }
+    }
     insta::assert_snapshot!("page", words_of(front));
 }
 
