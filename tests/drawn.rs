@@ -11,15 +11,15 @@
 
 mod common;
 
+use common::runs;
 use common::svg::{Frame, Shape, frames, rectangle_at, shapes};
 use immaculate::model::Conversion;
 use immaculate::model::conversion_moments::attenuation;
 use immaculate::model::conversion_validity::{Validity, validity};
+use immaculate::paper::Paper;
 use immaculate::paper::comparison::Quantity;
 use immaculate::paper::result::Reproduction;
-use immaculate::paper::specification::Choices;
 use immaculate::paper::sustika2015::sweep::{Fit, Parameter, Point, Trajectory, settings};
-use immaculate::paper::{Effort, Paper};
 use immaculate::report::long_term::{Panel, heat_maps};
 use immaculate::report::palette::{FILTERS, INK, MEASURED, SHADE, hexadecimal};
 use immaculate::report::{conversion, figure, fit_error, path, published, reproduction, stability_map};
@@ -526,14 +526,5 @@ fn colour(place: usize) -> &'static str {
 /// A simulation of each kind of each paper, three runs of it.
 fn reproductions() -> &'static [Reproduction] {
     static ALL: OnceLock<Vec<Reproduction>> = OnceLock::new();
-    ALL.get_or_init(|| {
-        let of_paper = |paper: Paper| {
-            let simulations = paper.simulations(&Choices::default());
-            let effort = Effort { runs: Some(3), seed: 1 };
-            simulations
-                .into_iter()
-                .map(move |choices| paper.reproduce(&choices, effort, &|| ()).unwrap())
-        };
-        Paper::ALL.into_iter().flat_map(of_paper).collect()
-    })
+    ALL.get_or_init(runs::reproductions)
 }

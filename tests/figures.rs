@@ -3,19 +3,19 @@
 //! Method: all figures are drawn from a few runs, with one seed, and read as text: colours, words, sizes, coordinates. Kind of evidence:
 //! exhaustion over the figures; exact, but where a tolerance of pixels is said.
 
+mod common;
+
+use common::runs::{self, EFFORT};
+use immaculate::paper::Paper;
 use immaculate::paper::result::Reproduction;
 use immaculate::paper::specification::Choices;
 use immaculate::paper::sustika2015::sweep::{Sweep, Trajectory};
-use immaculate::paper::{Effort, Paper};
 use immaculate::report::palette::{self, hexadecimal};
 use immaculate::report::{conversion, figure, fit_error, long_term, path, published, reproduction, stability_map};
 use immaculate::steady::map::Map;
 use immaculate::steady::verdict::Depth;
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
-
-/// Few runs are enough to draw.
-const EFFORT: Effort = Effort { runs: Some(3), seed: 1 };
 
 #[test]
 fn every_figure_uses_the_colours_of_the_palette_and_no_other() {
@@ -209,17 +209,7 @@ fn filters_that_see_different_draws_have_no_first_run_to_show() {
 /// A simulation of each kind of each paper, three runs of it.
 fn reproductions() -> &'static [Reproduction] {
     static ALL: OnceLock<Vec<Reproduction>> = OnceLock::new();
-    ALL.get_or_init(run_all)
-}
-
-fn run_all() -> Vec<Reproduction> {
-    let of_paper = |paper: Paper| {
-        let simulations = paper.simulations(&Choices::default());
-        simulations
-            .into_iter()
-            .map(move |choices| paper.reproduce(&choices, EFFORT, &|| ()).unwrap())
-    };
-    Paper::ALL.into_iter().flat_map(of_paper).collect()
+    ALL.get_or_init(runs::reproductions)
 }
 
 /// Every figure of the program with the name of its file.
@@ -230,7 +220,7 @@ fn figures() -> &'static [(String, String)] {
 
 fn draw_all() -> Vec<(String, String)> {
     let mut all = Vec::new();
-    let reproductions = run_all();
+    let reproductions = runs::reproductions();
     for reproduction in &reproductions {
         let stem = figure::stem(reproduction);
         all.push((format!("{stem}-errors"), figure::errors(reproduction).unwrap()));

@@ -3,6 +3,7 @@
 #![allow(dead_code, reason = "each test file uses its own part of this one")]
 
 pub mod program;
+pub mod runs;
 pub mod svg;
 
 use immaculate::filter::fixed_gain::FixedGain;
