@@ -10,12 +10,14 @@ use immaculate::paper::derbez2000::relative::{Relative, Tally, extremes};
 use immaculate::paper::derbez2000::{arithmetic, claims, long_term, search, stability};
 use immaculate::paper::experiment::Experiment;
 use immaculate::paper::liu2017::arithmetic::{point_counts, slightly_cheaper, time_proportional_to_points};
+use immaculate::paper::liu2017::claims::is_explained;
 use immaculate::paper::monte_carlo::run;
 use immaculate::paper::simulation::Simulation;
 use immaculate::paper::specification::{Choices, Specification, derbez2000, liu2017, zhu2016};
+use immaculate::paper::sustika2015::claims::{is_mismatch_the_cause, ratio_less, the_window_decides};
 use immaculate::paper::verdict::{
     Judgement, Verdict, all_below_zero, all_of, below_zero_whichever, better_by_a_thousandth, confirmed_if, in_words,
-    proven_if, sign_of, whichever,
+    is_within_a_thousandth, proven_by, proven_if, refuted_by, sign_of, whichever,
 };
 use immaculate::paper::zhu2016::arithmetic::{all_rmse_smaller, better_than_ckf, load};
 use immaculate::paper::{Effort, Paper};
@@ -122,6 +124,104 @@ fn better_means_better_by_a_thousandth() {
     ] {
         let found = better_by_a_thousandth(estimate(difference, standard_error), estimate(1000.0, 9.0));
         assert_eq!(found, verdict, "{difference} ± {standard_error}");
+    }
+}
+
+/// Exact: a thousandth of 1000 m is a metre, and four times an eighth is a half.
+#[test]
+fn no_difference_is_certainly_less_than_a_thousandth_either_way() {
+    for (difference, is_within) in [(0.0, true), (0.25, true), (-0.25, true), (0.5, false), (-0.75, false)] {
+        let found = is_within_a_thousandth(estimate(difference, 0.125), estimate(1000.0, 9.0));
+        assert_eq!(found, is_within, "{difference}");
+    }
+}
+
+#[test]
+fn what_does_not_come_out_shows_nothing() {
+    assert_eq!([true, false].map(proven_by), [Verdict::Proven, Verdict::Undecided]);
+    assert_eq!([true, false].map(refuted_by), [Verdict::Refuted, Verdict::Undecided]);
+}
+
+/// Exact: a published range of 8, which a configuration has, or of which chance is a fourth.
+#[test]
+fn a_range_is_explained_by_a_configuration_or_by_chance() {
+    for (widest, standard_deviation, is_reached) in [
+        (8.0, 0.0, true),
+        (7.5, 2.0, true),
+        (7.5, 1.75, false),
+        (8.5, 1.75, true),
+        (8.5, 2.25, true),
+    ] {
+        let found = is_explained(8.0, widest, standard_deviation);
+        assert_eq!(found, is_reached, "{widest}, {standard_deviation}");
+    }
+}
+
+/// Exact: over three times the paper's hundred runs its figure has √3 of the standard error of ours, so that both have twice ours.
+#[test]
+fn a_published_figure_is_met_within_four_standard_errors_of_both() {
+    for (published, is_one) in [(17.75, true), (18.0, false), (2.25, true), (2.0, false)] {
+        assert_eq!(
+            search::is_met(published, estimate(10.0, 1.0), 300),
+            is_one,
+            "{published}"
+        );
+    }
+}
+
+/// Numbers of divergent runs of IMM-CMKF, IMM-UKF wrapped and never wrapped.
+#[test]
+fn wrapping_and_matching_noises_tell_the_cause_of_divergence() {
+    for (matched, all, verdict) in [
+        // Wrapping ends it, and runs diverge where noises match.
+        ([0, 0, 1], [0, 2, 20], Verdict::Refuted),
+        ([0, 0, 1], [9, 3, 20], Verdict::Undecided),
+        ([0, 0, 0], [0, 2, 20], Verdict::Undecided),
+        // Wrapping does not help, and where noises match none diverges that wraps.
+        ([0, 0, 0], [0, 20, 20], Verdict::Confirmed),
+        ([0, 0, 1], [0, 20, 20], Verdict::Confirmed),
+        ([0, 1, 1], [0, 20, 20], Verdict::Undecided),
+        ([0, 0, 0], [0, 19, 20], Verdict::Undecided),
+        // None at all.
+        ([0, 0, 0], [0, 0, 0], Verdict::Undecided),
+    ] {
+        assert_eq!(is_mismatch_the_cause(matched, all), verdict, "{matched:?} {all:?}");
+    }
+}
+
+#[test]
+fn two_windows_say_which_filter_is_the_better_one_or_that_they_decide() {
+    let [less, more, neither] = [-8.0, 8.0, 0.0].map(|difference| estimate(difference, 1.0));
+    for (gaps, words) in [
+        ([less, less], "IMM-CMKF is the better one in both windows"),
+        ([more, more], "IMM-UKF is the better one in both windows"),
+        (
+            [less, more],
+            "which filter is the better one depends on when the manoeuvres are",
+        ),
+        (
+            [less, neither],
+            "the runs do not tell in both windows which filter is the better one",
+        ),
+    ] {
+        assert_eq!(the_window_decides(&gaps), words);
+    }
+}
+
+/// By hand: ratios 2 and ½ of three runs, which add (½, −½, 0) to the first and nothing to the second. 10⁻¹⁵: the root of a third.
+#[test]
+fn two_ratios_of_the_same_runs_differ_with_the_error_of_their_difference() {
+    let equal = [(2.0, 4.0); 3];
+    let varied = [(10.0, 4.0), (6.0, 4.0), (8.0, 4.0)];
+    let half = 0.5 / 3.0_f64.sqrt();
+    for (pairs, others, value, error) in [
+        (&varied, &equal, 1.5_f64, half),
+        (&equal, &varied, -1.5, half),
+        (&varied, &varied, 0.0, 0.0),
+    ] {
+        let found = ratio_less(pairs, others);
+        assert!((found.value - value).abs() < 1e-15, "{found:?}");
+        assert!((found.standard_error - error).abs() < 1e-15, "{found:?}");
     }
 }
 

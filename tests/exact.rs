@@ -13,16 +13,17 @@ use immaculate::imm::diagonal_mixing;
 use immaculate::matrix::{
     NotPositiveDefinite, check_positive_definite, cholesky, is_positive_semidefinite, ldl, quadratic_form, solve,
 };
-use immaculate::model::Measurement;
 use immaculate::model::acceleration::{
     acceleration_response, constant_acceleration, embedded_constant_velocity, embedded_velocity_response,
     position_matrix, response_noise,
 };
 use immaculate::model::motion::{Mode, acceleration_noise, constant_velocity, coordinated_turn, integrated_noise};
-use immaculate::number::{Convention, Field, Rational, RationalFunction, Surd};
+use immaculate::model::{Measurement, PolarComponent};
+use immaculate::number::{Convention, Enclosure, Field, Rational, RationalFunction, Surd};
 use immaculate::paper::sustika2015::operations::{Filter, cycle};
 use immaculate::paper::sustika2015::reasoning::{
-    difficult_jacobian, exact_moments, execution_time, kalman_needs_modification, no_linearisation,
+    difficult_jacobian, exact_moments, execution_time, kalman_needs_modification, keeps_both_moments, no_linearisation,
+    signs_of_linearity, vanishes,
 };
 use immaculate::paper::verdict::Verdict;
 use immaculate::rule::fifth_degree::{self, fifth_degree};
@@ -1234,6 +1235,54 @@ fn the_arguments_of_sustika2015_are_judged_by_what_can_be_computed() {
         ("sustika2015-no-linearisation", Verdict::Refuted),
     ];
     assert_eq!(found, expected);
+}
+
+/// What is proven by it must fail where there is nothing to prove: a number that is not zero, and one of which too little is known.
+#[test]
+fn only_what_is_known_to_be_zero_vanishes() {
+    let third = || Enclosure::ratio(1, 3) * Enclosure::integer(3) - Enclosure::integer(1);
+    assert!(vanishes(&Enclosure::integer(0)));
+    assert!(vanishes(&Enclosure::with_precision(192, third)));
+    // 3 · ⅓ − 1 to 64 bits may be 10⁻²⁰; 10⁻⁵⁰ is known not to be zero.
+    assert!(!vanishes(&Enclosure::with_precision(64, third)));
+    assert!(!vanishes(&Enclosure::exact(1e-50)));
+}
+
+/// A measurement that is linear has all signs of it, and one with a constant the second.
+#[test]
+fn a_linear_measurement_has_the_signs_of_linearity_and_range_and_bearing_have_none() {
+    let position = SMatrix::<Enclosure, 2, 6>::identity();
+    assert_eq!(signs_of_linearity(&Measurement::Linear(position)), [Some(true); 3]);
+    let polar = Measurement::Polar {
+        components: [PolarComponent::Range, PolarComponent::Bearing],
+        position: [0, 1],
+        sensor: [0, 0].map(Enclosure::integer),
+    };
+    assert_eq!(signs_of_linearity(&polar), [Some(false); 3]);
+}
+
+/// With one weight of the means or one of the covariances changed the points have only the other moment.
+#[test]
+fn points_keep_both_moments_where_both_weights_are_right() {
+    let rule = unscented(4, &Parameters::for_gaussian(4)).unwrap();
+    assert!(keeps_both_moments::<4>(&rule));
+    let doubled = |weights: &[Rational]| -> Vec<Rational> {
+        let mut doubled = weights.to_vec();
+        doubled[1] = doubled[1].clone() + doubled[1].clone();
+        doubled
+    };
+    let mean_is_wrong = ExactRule {
+        weights: doubled(&rule.weights),
+        ..rule.clone()
+    };
+    let covariance_is_wrong = ExactRule {
+        covariance_weights: doubled(&rule.covariance_weights),
+        ..rule
+    };
+    for wrong in [mean_is_wrong, covariance_is_wrong] {
+        assert!(Rule::<RationalFunction, 4>::from_exact(&wrong).is_ok());
+        assert!(!keeps_both_moments::<4>(&wrong));
+    }
 }
 
 /// The steady gains of constant velocity and constant acceleration with the same damping root.

@@ -148,9 +148,23 @@ pub fn below_zero_whichever(differences: &[Estimate]) -> Verdict {
     whichever(&each.collect::<Vec<Verdict>>())
 }
 
-/// Proven or refuted, by arithmetic.
+/// Proven or refuted, by arithmetic that decides the claim either way.
 pub fn proven_if(holds: bool) -> Verdict {
     if holds { Verdict::Proven } else { Verdict::Refuted }
+}
+
+/// Proven by a proof. One that does not come out shows nothing, least of all the opposite.
+pub fn proven_by(proof: bool) -> Verdict {
+    if proof { Verdict::Proven } else { Verdict::Undecided }
+}
+
+/// Refuted by a counterexample. One that does not come out shows nothing, least of all the claim.
+pub fn refuted_by(counterexample: bool) -> Verdict {
+    if counterexample {
+        Verdict::Refuted
+    } else {
+        Verdict::Undecided
+    }
 }
 
 /// Confirmed or refuted, by runs.
@@ -174,6 +188,11 @@ pub fn better_by_a_thousandth(difference: Estimate, error: Estimate) -> Verdict 
 
 /// The least part of an error that counts as a difference between filters: a thousandth, a tenth of the last digit that is published.
 pub const RELEVANT: f64 = 1e-3;
+
+/// Whether a difference is certainly less than a thousandth of an error, either way.
+pub fn is_within_a_thousandth(difference: Estimate, error: Estimate) -> bool {
+    difference.value.abs() + DECISIVE * difference.standard_error < RELEVANT * error.value
+}
 
 /// The verdict on several of which all must hold: refuted if one is, undecided if one is, not reproducible if one is, else the first.
 pub fn all_of(verdicts: &[Verdict]) -> Verdict {

@@ -8,7 +8,7 @@ use crate::imm::probability::{mixing_probability, predicted_mode_probability};
 use crate::model::acceleration::{acceleration_part, embedded_constant_velocity, position_matrix};
 use crate::number::{Field, Rational, RationalFunction};
 use crate::paper::specification::{Specification, Table};
-use crate::paper::verdict::{Judgement, Verdict, proven_if};
+use crate::paper::verdict::{Judgement, Verdict, proven_by, proven_if};
 use crate::statistics::estimate::figure;
 use crate::steady::gains;
 use crate::steady::mismatch::alpha_beta_lag;
@@ -52,7 +52,7 @@ pub fn constant_bounded_error(s: &Specification) -> Judgement {
         " the acceleration is off by all of a. The mean is constant, the error is not: it varies about the mean as in (7). It is bounded \
          as long as the noise in the gain calculation is not zero.",
     );
-    s.judgement("derbez2000-constant-bounded-error", proven_if(is_settled), evidence)
+    s.judgement("derbez2000-constant-bounded-error", proven_by(is_settled), evidence)
 }
 
 /// The mean error after one more step, from one before it: the target's acceleration is a, the filter's is zero.

@@ -9,7 +9,7 @@ use crate::number::{Convention, RationalFunction};
 use crate::paper::Effort;
 use crate::paper::monte_carlo::Generator;
 use crate::paper::specification::Specification;
-use crate::paper::verdict::{Judgement, Verdict, proven_if};
+use crate::paper::verdict::{Judgement, Verdict, proven_by, refuted_by};
 use crate::statistics::estimate::figure;
 use crate::steady::gains;
 use crate::steady::long_term::Form as Steps;
@@ -99,7 +99,7 @@ pub fn proposition(s: &Specification) -> Judgement {
         example(5.0),
         example(40.0),
     );
-    s.judgement("derbez2000-proposition", proven_if(holds), evidence)
+    s.judgement("derbez2000-proposition", proven_by(holds), evidence)
 }
 
 /// The accuracy of steps 0 to 6, figures 1 and 2.
@@ -136,12 +136,7 @@ pub fn algorithm_accuracy(s: &Specification, effort: Effort) -> Judgement {
          run away. Where q_v > q_a and the manoeuvre begins with the run the filter may lock into constant velocity for ever, and no form predicts it. The \
          percentages of the paper's figures are not in its text.",
     );
-    let verdict = if printed_is_off {
-        Verdict::Refuted
-    } else {
-        Verdict::Undecided
-    };
-    s.judgement("derbez2000-algorithm-accuracy", verdict, evidence)
+    s.judgement("derbez2000-algorithm-accuracy", refuted_by(printed_is_off), evidence)
 }
 
 fn median_size(percentages: Vec<f64>) -> f64 {

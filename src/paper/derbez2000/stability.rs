@@ -9,7 +9,7 @@ use super::instances::{
 };
 use crate::number::{Field, Rational, RationalFunction};
 use crate::paper::specification::Specification;
-use crate::paper::verdict::{Judgement, Verdict, proven_if};
+use crate::paper::verdict::{Judgement, proven_by, refuted_by};
 use crate::statistics::estimate::figure;
 use crate::steady::certificate::{Product, Quadratics};
 use crate::steady::map::Map;
@@ -67,7 +67,7 @@ pub fn theorem(s: &Specification) -> Judgement {
             .collect::<Vec<_>>()
             .join(", "),
     );
-    s.judgement("derbez2000-theorem", proven_if(!(meets && grows)), evidence)
+    s.judgement("derbez2000-theorem", refuted_by(meets && grows), evidence)
 }
 
 /// The trace of the mixed covariance after a run, and the greatest distance of a mode probability from one half.
@@ -117,7 +117,7 @@ pub fn stability_matrices(s: &Specification, map: &Map) -> Judgement {
     );
     s.judgement(
         "derbez2000-stability-matrices",
-        proven_if(lenient.0 == lenient.1 && strict.0 == strict.1),
+        refuted_by([lenient, strict] == [(true, false), (false, true)]),
         evidence,
     )
 }
@@ -150,11 +150,7 @@ pub fn prior_data_discounted(s: &Specification) -> Judgement {
          in which it contracts; the two have no common one. The sentence is true where the gains converge to one stable matrix, as in a single Kalman \
          filter.",
     );
-    s.judgement(
-        "derbez2000-prior-data-discounted",
-        proven_if(!(grows && alone)),
-        evidence,
-    )
+    s.judgement("derbez2000-prior-data-discounted", refuted_by(grows && alone), evidence)
 }
 
 /// The sentence of section 5, literally.
@@ -162,10 +158,14 @@ pub fn convex_combination(s: &Specification) -> Judgement {
     let n = |value: i64| Rational::new(value, 2);
     let a = Matrix2::new(n(1), n(20), n(0), n(1));
     let mean = remark_1_matrix(&[n(1), n(1)], &[a.clone(), a.transpose()]);
-    let holds = is_stable(&rows_of(&mean)) || !is_stable(&rows_of(&a));
+    let [alone, combined] = [&a, &mean].map(|matrix| is_stable(&rows_of(matrix)));
     let evidence = "A = [1/2 10; 0 1/2] and its transpose have the one eigenvalue 1/2, and their mean has 11/2. As a general statement the \
                     sentence is false; the next three entries say where it is true.";
-    s.judgement("derbez2000-convex-combination", proven_if(holds), evidence.to_owned())
+    s.judgement(
+        "derbez2000-convex-combination",
+        refuted_by(alone && !combined),
+        evidence.to_owned(),
+    )
 }
 
 /// The un-mixed reading, for all noises.
@@ -193,7 +193,7 @@ pub fn stable_unmixed(s: &Specification) -> Judgement {
                     combination of bounded estimates is bounded. In this reading the paper is right.";
     s.judgement(
         "derbez2000-stable-unmixed",
-        proven_if(first && second),
+        proven_by(first && second),
         evidence.to_owned(),
     )
 }
@@ -236,7 +236,7 @@ pub fn stable_mixed(s: &Specification) -> Judgement {
          see the same target of constant acceleration and start with and without its acceleration stay apart, one locked into constant velocity \
          ({locked}).",
     );
-    s.judgement("derbez2000-stable-mixed", proven_if(all), evidence)
+    s.judgement("derbez2000-stable-mixed", proven_by(all), evidence)
 }
 
 fn decided(interval: &str, measurement: &str, velocity: &str) -> Option<Joint> {
@@ -291,7 +291,7 @@ pub fn stable_mixed_unequal_noises(s: &Specification, map: &Map) -> Judgement {
     );
     s.judgement(
         "derbez2000-stable-mixed-unequal-noises",
-        proven_if(!is_refuted),
+        refuted_by(is_refuted),
         evidence,
     )
 }
@@ -314,6 +314,6 @@ pub fn local_instability(s: &Specification) -> Judgement {
          measurements 60, 60: in the third step the gain of CA is [{gain}] and (I − KH)F has an eigenvalue of magnitude 1.21, at least 6/5 by the Schur-Cohn \
          test on enclosures of the whole run. For CV none was found in runs. It is local: the next gains are others.",
     );
-    let verdict = if found { Verdict::Proven } else { Verdict::Undecided };
+    let verdict = proven_by(found);
     s.judgement("derbez2000-local-instability", verdict, evidence)
 }

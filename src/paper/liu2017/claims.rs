@@ -16,7 +16,8 @@ use crate::paper::monte_carlo::{Progress, run};
 use crate::paper::scenario::{Contestant, Motion, Scenario};
 use crate::paper::specification::{Choices, InvalidChoice, Specification, liu2017 as specification};
 use crate::paper::verdict::{
-    Judgement, RELEVANT, Verdict, all_of, better_by_a_thousandth, confirmed_if, in_words, proven_if,
+    DECISIVE, Judgement, RELEVANT, Verdict, all_of, better_by_a_thousandth, confirmed_if, in_words,
+    is_within_a_thousandth, proven_if, refuted_by,
 };
 use crate::rule::moment::{gaussian_moment, rule_moment};
 use crate::rule::sphere::every_dimension;
@@ -245,12 +246,8 @@ fn linear_imm_cannot(s: &Specification, printed: &Experiment, effort: Effort, pr
         figure(relative),
     );
     // It deals with the problem when it loses less than a tenth.
-    let verdict = if failed == 0 && relative < 0.1 {
-        Verdict::Refuted
-    } else {
-        Verdict::Confirmed
-    };
-    s.judgement("liu2017-linear-imm-cannot", verdict, evidence)
+    let deals_with_it = failed == 0 && relative < 0.1;
+    s.judgement("liu2017-linear-imm-cannot", refuted_by(deals_with_it), evidence)
 }
 
 /// The errors of the proposed filter beside all others, in the turns.
@@ -274,7 +271,7 @@ pub fn constant_velocity(s: &Specification, printed: &Experiment) -> Judgement {
     let same = OTHERS.iter().all(|&other| {
         let difference = comparison.difference_over(IMM5THSSRCKF, other, Quantity::Position, &straight);
         let error = comparison.error_over(other, Quantity::Position, &straight);
-        (difference.value.abs() + 4.0 * difference.standard_error) < RELEVANT * error.value
+        is_within_a_thousandth(difference, error)
     });
     let (_, mut evidence) = better_than_others(printed, &[Quantity::Position], &straight);
     end_sentence(&mut evidence);
@@ -346,8 +343,7 @@ fn table_1_gaps(
             .collect();
         let lowest = levels.iter().copied().fold(f64::MAX, f64::min);
         let highest = levels.iter().copied().fold(f64::MIN, f64::max);
-        // Explained: by the widest configuration, or by chance at four standard deviations.
-        reached &= width >= published || 4.0 * chance >= published;
+        reached &= is_explained(published, width, chance);
         let _ = write!(
             evidence,
             "{}: published range {} {}; paired, under the printed parameters {}; the widest of {} configurations {} ({name}), whose level \
@@ -374,6 +370,11 @@ fn table_1_gaps(
         Verdict::NotReproducible
     };
     Ok(s.judgement("liu2017-table-1-gaps", verdict, evidence))
+}
+
+/// Whether a published range is one of a configuration, or of chance at four standard deviations.
+pub fn is_explained(published: f64, widest: f64, standard_deviation: f64) -> bool {
+    widest >= published || DECISIVE * standard_deviation >= published
 }
 
 fn likelihood_exponent_effect(
@@ -409,8 +410,7 @@ fn likelihood_exponent_effect(
         mean_delay(&both, corrected),
     );
     let changes = comparison.greatest_probability_difference(printed, corrected) > RELEVANT;
-    let verdict = if changes { Verdict::Refuted } else { Verdict::Undecided };
-    Ok(s.judgement("liu2017-likelihood-exponent-effect", verdict, evidence))
+    Ok(s.judgement("liu2017-likelihood-exponent-effect", refuted_by(changes), evidence))
 }
 
 fn printed_weights(s: &Specification, printed: &Experiment) -> Judgement {

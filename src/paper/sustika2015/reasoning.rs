@@ -9,7 +9,7 @@ use crate::model::conversion::{Conversion, converted_covariance, converted_posit
 use crate::model::{Measurement, PolarComponent};
 use crate::number::{Convention, Counting, Dual, Enclosure, Field, Rational, RationalFunction, Real, Tally};
 use crate::paper::specification::{Specification, sustika2015 as specification};
-use crate::paper::verdict::{Judgement, Verdict, proven_if};
+use crate::paper::verdict::{Judgement, proven_by, proven_if, refuted_by};
 use crate::rule::moment::wrong_moment_of_degree;
 use crate::rule::unscented::{Parameters, unscented};
 use crate::rule::{ExactRule, Rule};
@@ -78,22 +78,19 @@ fn closed_jacobian<T: Real>(x: &T, y: &T) -> SMatrix<T, 2, 6> {
     matrix
 }
 
-/// Whether a number is known to be zero but for less than [`WIDTH`].
-fn vanishes(value: &Enclosure) -> bool {
+/// Whether a number is known to be zero but for less than 10⁻⁴⁰.
+pub fn vanishes(value: &Enclosure) -> bool {
     value.contains(&Rational::zero()) && value.width() < WIDTH
-}
-
-/// Whether both Jacobians of (3) are the same at a position.
-fn agree_at([x, y]: [f64; 2]) -> bool {
-    let (x, y) = (Enclosure::exact(x), Enclosure::exact(y));
-    let difference = jacobian(&at(&x, &y)) - closed_jacobian(&x, &y);
-    difference.iter().all(vanishes)
 }
 
 /// "the calculating of the Jacobian matrix is always a very difficult and error-prone process".
 pub fn difficult_jacobian() -> Judgement {
-    let found = Enclosure::with_precision(BITS, || POSITIONS.map(agree_at));
-    let agreeing = found.iter().filter(|agrees| **agrees).count();
+    let agree_at = |[x, y]: &[f64; 2]| {
+        let (x, y) = (Enclosure::exact(*x), Enclosure::exact(*y));
+        let difference = jacobian(&at(&x, &y)) - closed_jacobian(&x, &y);
+        difference.iter().all(vanishes)
+    };
+    let agreeing = Enclosure::with_precision(BITS, || POSITIONS.iter().filter(|position| agree_at(position)).count());
     let first = POSITIONS[0];
     let matrix = jacobian(&at(&first[0], &first[1]));
     let entries = matrix.iter().filter(|entry| **entry != 0.0).count();
@@ -118,59 +115,61 @@ pub fn difficult_jacobian() -> Judgement {
             ""
         },
     );
-    // A Jacobian that did not come out would not show that it is always difficult.
-    let verdict = if agreeing == POSITIONS.len() {
-        Verdict::Refuted
-    } else {
-        Verdict::Undecided
-    };
-    specification().judgement("sustika2015-difficult-jacobian", verdict, evidence)
+    let comes_out = agreeing == POSITIONS.len();
+    specification().judgement("sustika2015-difficult-jacobian", refuted_by(comes_out), evidence)
+}
+
+/// The two measured values of a position and of others on the line through it and the radar, X = (3, 4): at X, −X, the radar, 2X.
+fn on_a_line(measurement: &Measurement<Enclosure, 6, 2>) -> [Vector2<Enclosure>; 4] {
+    let state = at(&Enclosure::integer(3), &Enclosure::integer(4));
+    [1, -1, 0, 2].map(|factor| measurement.of(&(&state * Enclosure::integer(factor))))
+}
+
+/// What HX would have, as far as a measurement has it: opposite first values at X and −X; with a constant too, their mean at the radar;
+/// and twice the second value at 2X. None where that is not decided.
+pub fn signs_of_linearity(measurement: &Measurement<Enclosure, 6, 2>) -> [Option<bool>; 3] {
+    let differences = Enclosure::with_precision(BITS, || {
+        let [here, opposite, nowhere, twice] = on_a_line(measurement);
+        let two = || Enclosure::integer(2);
+        let is_odd = &opposite[0] + &here[0];
+        let is_affine = &opposite[0] + &here[0] - two() * &nowhere[0];
+        let doubles = &twice[1] - two() * &here[1];
+        [is_odd, is_affine, doubles]
+    });
+    differences.map(|difference| difference.is_decided().then(|| difference.contains(&Rational::zero())))
 }
 
 /// "Kalman filter can't be used without modification because Kalman filter only work on linear system".
 pub fn kalman_needs_modification() -> Judgement {
-    // Small integers whose squares have a sum that is a square: every double is exact.
-    let state = at(&3.0, &4.0);
-    let range = |factor: f64| Rational::from_f64(range_and_bearing(&(state * factor))[0]);
-    let [here, opposite, nowhere] = [1.0, -1.0, 0.0].map(range);
-    let is_odd = opposite == -here.clone();
-    let is_affine = here.clone() + opposite.clone() == Rational::integer(2) * nowhere.clone();
-    let bearing_doubles = Enclosure::with_precision(BITS, || {
-        let state = at(&Enclosure::integer(3), &Enclosure::integer(4));
-        let [once, twice] = [1, 2].map(|factor| range_and_bearing(&(&state * Enclosure::integer(factor)))[1].clone());
-        (twice - Enclosure::integer(2) * once).contains(&Rational::zero())
-    });
+    let [here, opposite, nowhere, _] = Enclosure::with_precision(BITS, || on_a_line(&polar()));
+    let signs = signs_of_linearity(&polar());
+    let [_, _, bearing_doubles] = signs;
     let evidence = format!(
         "Exact: HX has opposite values at X and −X, and (3) the same range, {} m at (3, 4) and {} m at (−3, −4). Nor is there an H and a \
          constant: the mean of these two is then what is seen at the radar, {} m. {}, where HX would double. So there is no such H, and \
          the filter needs another measurement, (20)-(26), or another update, (27)-(36); nothing else of it has to change.",
-        here,
-        opposite,
-        nowhere,
-        if bearing_doubles {
-            "The bearing of 2X may be twice that of X"
-        } else {
+        here[0].middle(),
+        opposite[0].middle(),
+        nowhere[0].middle(),
+        if bearing_doubles == Some(false) {
             "The bearing of 2X is that of X"
+        } else {
+            "The bearing of 2X may be twice that of X"
         },
     );
-    let holds = !is_odd && !is_affine && !bearing_doubles;
-    specification().judgement("sustika2015-kalman-needs-modification", proven_if(holds), evidence)
+    let verdict = proven_by(signs == [Some(false); 3]);
+    specification().judgement("sustika2015-kalman-needs-modification", verdict, evidence)
 }
 
 /// Whether the points drawn from a mean and a covariance have these as their moments, for all of them: the mean and the square root of
-/// the covariance are unknown.
-fn keeps_both_moments<const N: usize>(rule: &ExactRule) -> bool {
+/// the covariance, whichever, are unknown.
+pub fn keeps_both_moments<const N: usize>(rule: &ExactRule) -> bool {
     let Ok(rule) = Rule::<RationalFunction, N>::from_exact(rule) else {
         return false;
     };
     let mean = SVector::<RationalFunction, N>::from_fn(|row, _| RationalFunction::unknown(&format!("m{row}")));
-    let root = SMatrix::<RationalFunction, N, N>::from_fn(|row, column| {
-        if column > row {
-            RationalFunction::zero()
-        } else {
-            RationalFunction::unknown(&format!("s{row}{column}"))
-        }
-    });
+    let root =
+        SMatrix::<RationalFunction, N, N>::from_fn(|row, column| RationalFunction::unknown(&format!("s{row}{column}")));
     let points: Vec<_> = rule
         .points
         .iter()

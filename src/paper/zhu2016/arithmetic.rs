@@ -6,7 +6,7 @@
 use super::quantity_of_row;
 use crate::number::Rational;
 use crate::paper::specification::Specification;
-use crate::paper::verdict::{Judgement, Verdict, proven_if};
+use crate::paper::verdict::{Judgement, Verdict, proven_if, refuted_by};
 use crate::rule::unscented::Parameters;
 use crate::rule::{ExactRule, fifth_degree, third_degree, unscented};
 use crate::statistics::estimate::figure;
@@ -84,7 +84,7 @@ pub fn negative_weights_vanish(s: &Specification) -> Judgement {
         " each negative weight goes to zero like −1/(2n), but there are 2n of them: their sum n(4 − n)/(n + 2)² goes to −1 and Σ|w| to 3. \
          Smaller than the unscented rule's (2n − 3)/3 for every n ≥ 4, so the comparison holds and its reason does not.",
     );
-    s.judgement("zhu2016-negative-weights-vanish", proven_if(!sums_grow), evidence)
+    s.judgement("zhu2016-negative-weights-vanish", refuted_by(sums_grow), evidence)
 }
 
 /// How many weights the fifth-degree rule has.

@@ -236,13 +236,10 @@ impl Runs {
 
     /// That ratio less the same of two other simulations with the same random numbers.
     pub fn over_less(&self, over: &Self, others: [&Self; 2], filter: usize) -> Estimate {
-        let (here, terms) = ratio_terms(&self.pairs(filter, over, filter));
-        let (there, other_terms) = ratio_terms(&others[0].pairs(filter, others[1], filter));
-        let terms = terms.iter().zip(&other_terms).map(|(a, b)| a - b);
-        Estimate {
-            value: here - there,
-            standard_error: mean(&terms.collect::<Vec<f64>>()).standard_error,
-        }
+        ratio_less(
+            &self.pairs(filter, over, filter),
+            &others[0].pairs(filter, others[1], filter),
+        )
     }
 
     /// The root mean square position error of a filter in the steps of constant acceleration less that in the others, m.
@@ -275,6 +272,17 @@ fn ratio(pairs: &[(f64, f64)]) -> Estimate {
     Estimate {
         value,
         standard_error: mean(&terms).standard_error,
+    }
+}
+
+/// The ratio of two means less another of the same runs, with its standard error to first order.
+pub fn ratio_less(pairs: &[(f64, f64)], others: &[(f64, f64)]) -> Estimate {
+    let (here, terms) = ratio_terms(pairs);
+    let (there, other_terms) = ratio_terms(others);
+    let terms = terms.iter().zip(&other_terms).map(|(a, b)| a - b);
+    Estimate {
+        value: here - there,
+        standard_error: mean(&terms.collect::<Vec<f64>>()).standard_error,
     }
 }
 

@@ -97,7 +97,7 @@ pub fn larger_error_in_figure_3(s: &Specification, runs: &Evidence) -> Judgement
 }
 
 /// What two differences of the same filters in two windows say together.
-fn the_window_decides(gaps: &[Estimate; 2]) -> &'static str {
+pub fn the_window_decides(gaps: &[Estimate; 2]) -> &'static str {
     match below_zero_whichever(gaps) {
         Verdict::NotReproducible => "which filter is the better one depends on when the manoeuvres are",
         Verdict::Confirmed => "IMM-CMKF is the better one in both windows",

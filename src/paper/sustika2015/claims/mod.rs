@@ -18,6 +18,10 @@ mod noises;
 mod reachable;
 mod straight;
 
+pub use evidence::ratio_less;
+pub use manoeuvring::the_window_decides;
+pub use noises::is_mismatch_the_cause;
+
 use super::reasoning;
 use crate::paper::Effort;
 use crate::paper::monte_carlo::Progress;

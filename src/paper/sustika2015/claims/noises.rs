@@ -262,14 +262,21 @@ pub fn cause_of_divergence(s: &Specification, runs: &Evidence) -> Judgement {
         clauses(&[0, 1, 2], |path| paired(2, path)),
         by_squares.divergent.map(|count| count.to_string()).join(", "),
     );
-    // The cut is the cause where wrapping ends it; the mismatch is not, where runs diverge without one.
-    let [_, wrapped, plain] = [0, 1, 2].map(|filter| both.divergent[filter] + sweeps.divergent[filter]);
-    let verdict = if matched.divergent[PLAIN] > 0 && 10 * wrapped <= plain {
+    let all = [0, 1, 2].map(|filter| both.divergent[filter] + sweeps.divergent[filter]);
+    let verdict = is_mismatch_the_cause(matched.divergent, all);
+    s.judgement("sustika2015-cause-of-divergence", verdict, evidence)
+}
+
+/// Whether the mismatch of the noises is why runs of the unscented filter diverge, from how many do where the noises match and in all: of
+/// IMM-CMKF, and of IMM-UKF wrapped and never wrapped.
+///
+/// The cut is the cause where wrapping ends it; the mismatch is not, where runs diverge without one.
+pub fn is_mismatch_the_cause(matched: [usize; 3], all: [usize; 3]) -> Verdict {
+    if matched[PLAIN] > 0 && 10 * all[WRAPPED] <= all[PLAIN] {
         Verdict::Refuted
-    } else if plain > 0 && wrapped >= plain && matched.divergent[WRAPPED] == 0 {
+    } else if all[PLAIN] > 0 && all[WRAPPED] >= all[PLAIN] && matched[WRAPPED] == 0 {
         Verdict::Confirmed
     } else {
         Verdict::Undecided
-    };
-    s.judgement("sustika2015-cause-of-divergence", verdict, evidence)
+    }
 }
