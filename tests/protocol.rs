@@ -630,6 +630,7 @@ fn the_error_of_an_answer_may_be_said_in_many_ways() {
         (json!(5), Some("5")),
         (json!({ "code": 5 }), Some("{\"code\":5}")),
         (json!(true), Some("true")),
+        (json!(["singular"]), Some("[\"singular\"]")),
         (json!(null), None),
         (json!(""), None),
         (json!([]), None),

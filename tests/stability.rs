@@ -15,7 +15,9 @@ use immaculate::model::acceleration::{
 };
 use immaculate::model::{Measurement, motion::Mode};
 use immaculate::number::{Enclosure, Field, Rational, RationalFunction, Real};
-use immaculate::oracle::certificate::{CertificateFile, FiltersFile, InvalidCertificate, Noises, ProofFile};
+use immaculate::oracle::certificate::{
+    CertificateFile, FiltersFile, InvalidCertificate, Noises, ProofFile, read_number,
+};
 use immaculate::paper::derbez2000::instances;
 use immaculate::paper::monte_carlo::Generator;
 use immaculate::steady::certificate::{Edge, NotProven, Product, Quadratics};
@@ -933,6 +935,57 @@ fn a_certificate_that_is_none_gets_a_sentence() {
             FiltersFile::DampingRoots(roots.map(str::to_owned)).filters().is_err(),
             "{roots:?}"
         );
+    }
+}
+
+/// Exact: the greatest that is read and the least that is not. A proof as large as that is refused for another reason: it is none.
+#[test]
+fn a_certificate_has_no_more_of_anything_than_is_ever_written() {
+    let read = |name: &str| {
+        let (_, text) = certificate_files().into_iter().find(|(own, _)| own == name).unwrap();
+        CertificateFile::read(&text).unwrap()
+    };
+    let (stable, unstable) = (
+        read("derbez2000.t2.r0.05.json"),
+        read("unstable.three-quarters-and-one-sixth.json"),
+    );
+    let refused = |proof: ProofFile| {
+        let file = CertificateFile {
+            proof,
+            ..stable.clone()
+        };
+        file.check().unwrap_err().to_string()
+    };
+    let ProofFile::Stable { edges, forms } = &stable.proof else {
+        panic!("a stable pair")
+    };
+    let with = |edge_count: usize, form_count: usize| ProofFile::Stable {
+        edges: edges.iter().cycle().take(edge_count).copied().collect(),
+        forms: forms.iter().cycle().take(form_count).cloned().collect(),
+    };
+    let ProofFile::Unstable { radius, .. } = &unstable.proof else {
+        panic!("an unstable pair")
+    };
+    let of_letters = |count: usize| ProofFile::Unstable {
+        word: "v".repeat(count),
+        radius: radius.clone(),
+    };
+    for (largest, too_large, reason) in [
+        (with(2, 256), with(2, 257), "has more than 256 forms"),
+        (with(512, 2), with(513, 2), "has more than 512 edges"),
+        (of_letters(128), of_letters(129), "has more than 128 letters"),
+    ] {
+        assert!(!refused(largest).contains("has more than"), "{reason}");
+        assert!(refused(too_large).contains(reason), "{reason}");
+    }
+    // Numerator and denominator together have 1024 bits, and 1025.
+    let power = |bits: u32| Rational::integer(2).pow(bits).to_string();
+    for text in [power(1022), format!("1/{}", power(1022))] {
+        assert!(read_number("radius", &text).is_ok(), "{text}");
+    }
+    for text in [power(1023), format!("1/{}", power(1023)), format!("-{}", power(1030))] {
+        let error = read_number("radius", &text).unwrap_err().to_string();
+        assert!(error.contains("it has too many digits"), "{error}");
     }
 }
 
