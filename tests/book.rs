@@ -8,7 +8,7 @@
 use immaculate::book::doc::{Doc, PartKind};
 use immaculate::book::find::find;
 use immaculate::book::source::{File, items_of, source_files, test_files};
-use immaculate::book::{Entry, entries, entries_of, html, markup, realisations};
+use immaculate::book::{Entry, Realisation, entries, entries_of, html, markup, realisations};
 use immaculate::imm::Quantity;
 use immaculate::oracle::variant::{Kind, catalogue};
 use immaculate::oracle::{case, problem::ProblemFile};
@@ -30,6 +30,46 @@ fn every_equation_has_code_and_a_test() {
     assert_eq!(lacks(&spoilt), ["test"]);
     spoilt.realisations.clear();
     assert_eq!(lacks(&spoilt), ["code", "test"]);
+}
+
+/// What a test is evidence of is worth as much as its kind. Of one that no item names, an erratum's, its file says the kind.
+#[test]
+fn every_test_of_an_equation_has_a_kind_of_evidence() {
+    let kinds = ["exact", "symbolic", "property", "statistics", "traceability"];
+    for entry in entries() {
+        for evidence in &entry.evidence {
+            let word = evidence.kind.split([' ', ',']).next().unwrap();
+            assert!(kinds.contains(&word), "{}: {evidence:?}", entry.reference);
+        }
+    }
+    let of_erratum = "without_noise_in_the_gain_calculation_the_mismatched_error_is_not_bounded";
+    let mut all = entries().iter().flat_map(|entry| &entry.evidence);
+    assert_eq!(all.find(|evidence| evidence.test == of_erratum).unwrap().kind, "exact");
+}
+
+/// An item has its own evidence and that of the items which it names, the nearest ones of their names; an equation that of its items and
+/// of its erratum.
+#[test]
+fn the_evidence_of_an_equation_is_that_of_its_items_and_of_those_they_name() {
+    fn of_item(realisation: &Realisation) -> BTreeSet<String> {
+        let mut tests: BTreeSet<String> = realisation.doc.evidence().into_iter().map(|named| named.test).collect();
+        for name in realisation.doc.evidence_of() {
+            let of_name = || realisations().iter().filter(|other| other.item.name == name);
+            let near = of_name().find(|other| other.item.path == realisation.item.path);
+            let other = near.or_else(|| of_name().next()).unwrap_or_else(|| panic!("no {name}"));
+            tests.extend(of_item(other));
+        }
+        tests
+    }
+    let mut by_another = 0;
+    for entry in entries() {
+        let mut expected: BTreeSet<String> = entry.realisations.iter().flat_map(|item| of_item(item)).collect();
+        expected.extend(entry.equation.erratum.iter().filter_map(|erratum| erratum.test.clone()));
+        let found: BTreeSet<String> = entry.evidence.iter().map(|evidence| evidence.test.clone()).collect();
+        assert_eq!(found, expected, "{}", entry.reference);
+        by_another += usize::from(entry.realisations.iter().any(|item| !item.doc.evidence_of().is_empty()));
+    }
+    assert!(by_another > 10, "{by_another}");
 }
 
 #[test]
@@ -184,6 +224,7 @@ fn every_formula_is_mathml() {
             let kept = kept.split_once("</annotation>").unwrap().0;
             let kept = kept.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&");
             assert_eq!(&kept, latex, "{}", entry.reference);
+            assert_eq!(markup::formula(latex).into_string(), math, "{}", entry.reference);
         }
     }
     for wrong in [

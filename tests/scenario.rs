@@ -1,6 +1,6 @@
 //! Goal: whoever changes the program sees what the change does to the papers' figures.
 //!
-//! Method: snapshots of short experiments, rounded, with units. Kind of evidence: the weakest there is. A snapshot says what the
+//! Method: snapshots of short experiments, rounded, with units. Kind of evidence: snapshot, the weakest there is. It says what the
 //! program answers and not whether that is right; it is for people who compare it with the published tables, and with what stood
 //! there before. How long anything took is left out, and the figures of 20 runs are rough: `immaculate reproduce` has the rest.
 

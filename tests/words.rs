@@ -2,7 +2,7 @@
 //! beside them.
 //!
 //! Method: snapshots of what is printed and drawn, from values that stand here and are small enough to be followed by eye; no filter is
-//! run. Pictures are kept as SVG files, to be opened beside each other. Kind of evidence: the weakest there is. A snapshot says what is
+//! run. Pictures are kept as SVG files, to be opened beside each other. Kind of evidence: snapshot, the weakest there is. It says what is
 //! printed, and a person reads whether it is right.
 
 use immaculate::book;

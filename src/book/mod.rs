@@ -210,7 +210,9 @@ fn evidence_of_item(realisation: &Realisation, depth: usize) -> Vec<Named> {
 fn kind_of_file(path: &str) -> String {
     static KINDS: LazyLock<BTreeMap<String, String>> = LazyLock::new(|| {
         let kinds = source::test_files().into_iter().map(|file| {
-            let said = file.text.split("Kind of evidence: ").nth(1).unwrap_or_default();
+            // It may go on in the next line.
+            let text = file.text.replace("\n//! ", " ");
+            let said = text.split("Kind of evidence: ").nth(1).unwrap_or_default();
             let word = said.split(|c: char| !c.is_alphabetic()).next().unwrap_or_default();
             (file.path, word.to_owned())
         });
