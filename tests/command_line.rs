@@ -405,6 +405,29 @@ fn out_writes_both_scenarios_of_a_paper_with_two_and_the_run_that_it_shows() {
             assert!(!figure.contains("NaN"), "{stem}{name}");
         }
     }
+    assert!(directory.join("derbez2000-figures-1-and-2.svg").exists());
+}
+
+/// The published figures of all its scenarios are in one picture; what the paper's conversion is good for is beside them.
+#[test]
+fn out_writes_the_published_figures_of_all_scenarios_and_the_conversions() {
+    let directory = temporary("out of four scenarios");
+    let place = directory.to_str().unwrap();
+    let text = succeeds(&["reproduce", "sustika2015", "--runs", "2", "--brief", "--out", place]);
+    assert!(
+        text.contains("Converted measurements: up to which"),
+        "the table of conversions in\n{text}"
+    );
+    let figure = |name: &str| std::fs::read_to_string(directory.join(format!("sustika2015-{name}.svg"))).unwrap();
+    let published = figure("published");
+    for table in ["Table 4", "Table 5"] {
+        assert!(published.contains(table), "{table}");
+    }
+    assert!(figure("conversions").contains("ρ"));
+    assert!(
+        !directory.join("sustika2015-figures-1-and-2.svg").exists(),
+        "of another paper"
+    );
 }
 
 #[test]
