@@ -617,6 +617,22 @@ fn a_value_that_is_right_by_other_means_does_not_hide_a_mistake() {
 
 // What was done
 
+/// A value that is no number must be explained, too: not by a variant that makes no difference where the others are looked at.
+#[test]
+fn what_is_not_finite_is_not_explained_by_what_gives_a_number() {
+    let answer = |problem: &ProblemFile| {
+        let Expected::Trace(certified) = &published(&problem.id).expected else {
+            panic!("a trace")
+        };
+        let mut shown = certified.clone();
+        shown.set(1, Q::CombinedMean, 0, vec![f64::NAN; 4]);
+        shown
+    };
+    let report = verdict(&mut Shows::new(answer), "step.n4-m2.two-modes");
+    assert_eq!(report.cases[0].outcome, Outcome::Wrong);
+    assert_eq!(in_words(&report.diagnosis), "none explains any of 1");
+}
+
 /// Where all is shown, mistakes are found one for each equation, in the order of the equations, up to six.
 #[test]
 fn as_many_mistakes_as_six_are_named_together_on_one_case() {
@@ -695,8 +711,11 @@ fn where_the_filters_of_a_program_have_different_mistakes_each_is_told_its_own()
         ),
         // Either is invisible in the other filter, so that the two together explain all as well.
         (
-            [kalman(&["motion-on-one-side"]), cubature(&["points-without-root"])],
-            "cubature-3: points-without-root; kalman: motion-on-one-side",
+            [
+                kalman(&["cross-covariance-of-mixed-covariance"]),
+                cubature(&["cross-covariance-of-propagated-points"]),
+            ],
+            "cubature-3: cross-covariance-of-propagated-points; kalman: cross-covariance-of-mixed-covariance",
         ),
         (
             [kalman(&[]).wild(), cubature(&["innovation-reversed"])],
