@@ -1268,6 +1268,54 @@ fn a_long_csv_is_read_with_patience() {
     }
 }
 
+/// A number by itself has no row, one of a vector no column; scale and noise of each are those of its own step and mode.
+#[test]
+fn the_lines_of_a_long_csv_say_where_a_number_stands() {
+    let case = of("steps.kalman");
+    let Expected::Trace(trace) = &case.expected else {
+        panic!("a trace")
+    };
+    let text = long_csv(&case.problem, trace, case.trace_text);
+    let file = parsed(case.trace_text);
+    let line = |start: &str| {
+        let start = format!("{},{start},", case.problem.id);
+        let mut lines = text.lines().filter_map(|line| line.strip_prefix(&start));
+        let [value, scale, noise]: [f64; 3] = {
+            let columns = lines.next().unwrap().split(',');
+            columns
+                .map(|number| number.parse().unwrap())
+                .collect::<Vec<_>>()
+                .try_into()
+                .unwrap()
+        };
+        assert_eq!(lines.next(), None, "{start}");
+        (value, scale, noise)
+    };
+    for (start, value, noise) in [
+        (
+            "2,1,log_likelihood,,",
+            "/steps/1/modes/0/log_likelihood",
+            "/noise/1/modes/0/log_likelihood",
+        ),
+        (
+            "2,2,updated.mean,3,",
+            "/steps/1/modes/1/updated/mean/2",
+            "/noise/1/modes/1/updated/mean",
+        ),
+        ("1,2,gain,4,2", "/steps/0/modes/1/gain/3/1", "/noise/0/modes/1/gain"),
+        (
+            "2,,mode_probabilities,2,",
+            "/steps/1/mode_probabilities/1",
+            "/noise/1/mode_probabilities",
+        ),
+    ] {
+        let number = |pointer: &str| file.pointer(pointer).and_then(Value::as_f64).unwrap();
+        let (found, scale, found_noise) = line(start);
+        assert_eq!((found, found_noise), (number(value), number(noise)), "{start}");
+        assert!(scale > 0.0, "{start}");
+    }
+}
+
 #[test]
 fn a_wrong_long_csv_is_refused_with_its_line() {
     for (line, place, words) in [
