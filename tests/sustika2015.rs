@@ -837,6 +837,10 @@ fn what_is_no_journal_is_refused_and_left_alone() {
             text.replacen(",7,", ",seven,", 1),
             "line 3: `seven` is not a number of its column",
         ),
+        (
+            text.replacen(",7,", ",07,", 1),
+            "line 3: a number is not as this program writes it",
+        ),
         (format!("{text}{first}\n"), "there are more lines than settings"),
     ];
     for (content, words) in spoilt {
