@@ -81,6 +81,12 @@ fn stability_proves_and_refutes() {
     let needs_memory = ["stability", "--roots", "4/5", "46/125"];
     assert!(succeeds(&needs_memory).contains("MIXED     certified stable"));
     assert!(succeeds(&[&needs_memory[..], &["--memory", "0"]].concat()).contains("MIXED     undecided"));
+    // Four forms are shown, and no more are spoken of.
+    let four = succeeds(&["stability", "--roots", "4/5", "17/50"]);
+    assert!(
+        four.contains("P(aa) = ") && !four.contains("more: --certificate"),
+        "{four}"
+    );
     let folder = temporary("certificates");
     std::fs::create_dir_all(&folder).unwrap();
     let path = folder.join("proof.json");
@@ -384,7 +390,8 @@ fn out_writes_the_files_that_it_names() {
 fn out_writes_both_scenarios_of_a_paper_with_two_and_the_run_that_it_shows() {
     let directory = temporary("out of two scenarios");
     let place = directory.to_str().unwrap();
-    succeeds(&["reproduce", "derbez2000", "--runs", "2", "--brief", "--out", place]);
+    let text = succeeds(&["reproduce", "derbez2000", "--runs", "2", "--brief", "--out", place]);
+    assert!(!text.contains("Converted measurements"), "of another paper");
     for stem in ["derbez2000", "derbez2000-acceleration"] {
         let text = |name: &str| std::fs::read_to_string(directory.join(format!("{stem}{name}"))).unwrap();
         let value: Value = serde_json::from_str(&text(".json")).unwrap();

@@ -26,7 +26,7 @@ use immaculate::paper::{Effort, Paper, liu2017, sustika2015, zhu2016};
 use immaculate::rule::RuleName;
 use immaculate::statistics::consistency::{nees, nis};
 use immaculate::statistics::fit_error::FitForm;
-use nalgebra::{Matrix4, Vector2, Vector3, Vector4, Vector6};
+use nalgebra::{Matrix4, Matrix6, Vector2, Vector3, Vector4, Vector6};
 use std::collections::BTreeSet;
 use std::fmt::Debug;
 use std::time::Duration;
@@ -330,7 +330,9 @@ fn every_alternative_of_sustika2015_means_what_its_sentence_says() {
                     }
             }),
             ("initial-covariance", "toolbox", |s, _| {
-                s.setup.initial == InitialCovariance::Constant([0.1, 0.1, 0.5])
+                let estimate = &s.setup.initial(&Vector2::new(1000.0, 0.5)).modes[1];
+                let variances = Vector6::new(0.1, 0.1, 0.1, 0.1, 0.5, 0.5);
+                estimate.covariance == Matrix6::from_diagonal(&variances)
             }),
             ("conversion", "additive", |s, _| {
                 s.setup.conversion == Conversion::Additive
