@@ -174,6 +174,8 @@ fn sentences_are_short_and_plain() {
     for arguments in [
         &["rule", &long, "-n", "4"][..],
         &["choices", "\u{1b}[31m\u{7}"],
+        &["equation", "\u{1b}[31m\u{7}"],
+        &["trace", "\u{1b}[31m\u{7}"],
         &["trace", &long],
         &["variants", &long],
         &["cases", "show", &long],
