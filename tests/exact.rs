@@ -1248,7 +1248,7 @@ fn only_what_is_known_to_be_zero_vanishes() {
     assert!(!vanishes(&Enclosure::exact(1e-50)));
 }
 
-/// A measurement that is linear has all signs of it, and one with a constant the second.
+/// A measurement that is linear has all signs of it.
 #[test]
 fn a_linear_measurement_has_the_signs_of_linearity_and_range_and_bearing_have_none() {
     let position = SMatrix::<Enclosure, 2, 6>::identity();
