@@ -105,9 +105,7 @@ fn nobody_can_tell_whether_a_drowned_value_is_right() {
 #[test]
 fn a_turn_counts_in_an_innovation_and_not_in_an_expected_bearing() {
     let case = published("step.cubature-3");
-    let Expected::Trace(certified) = &case.expected else {
-        panic!("a trace")
-    };
+    let certified = certified(case);
     let bearing = (0..2).find(|&row| case.problem.is_bearing(row)).unwrap();
     let turned = |quantity, row: usize, turns: f64| {
         let mut scene = Scene::of(&case.problem, certified);
@@ -450,9 +448,7 @@ fn a_report_is_empty_where_nothing_was_judged() {
 fn the_digits_are_those_of_the_worst_value_that_is_right() {
     let digits = |error: f64| {
         let answer = move |problem: &ProblemFile| {
-            let Expected::Trace(certified) = &published(&problem.id).expected else {
-                panic!("a trace")
-            };
+            let certified = certified(published(&problem.id));
             let mut shown = certified.clone();
             // The chain of this case gives 0.64 and 0.36; the unit of a probability is the probability.
             let chain = certified.get(1, Q::PredictedModeProbabilities, 0).unwrap();
@@ -477,9 +473,7 @@ fn the_digits_are_those_of_the_worst_value_that_is_right() {
 fn what_was_never_shown_is_said() {
     let id = "step.n4-m2.two-modes";
     let answer = |problem: &ProblemFile| {
-        let Expected::Trace(certified) = &published(&problem.id).expected else {
-            panic!("a trace")
-        };
+        let certified = certified(published(&problem.id));
         let mut shown = Trace::empty(problem.dimensions());
         // The gain of one mode alone is shown, too.
         for place in [(1, Q::PredictedModeProbabilities, 0), (1, Q::Gain, 1)] {
@@ -498,11 +492,7 @@ fn what_was_never_shown_is_said() {
         !quantity.needs_conversion() && ![Q::PredictedModeProbabilities, Q::Gain].contains(quantity)
     });
     assert_eq!(report.hidden, expected.collect::<Vec<_>>());
-    let mut everything = Planted {
-        variants: vec![],
-        level: Level::Everything,
-    };
-    assert_eq!(verdict(&mut everything, id).hidden, []);
+    assert_eq!(verdict(&mut planted(&[]), id).hidden, []);
     // A filter in Rust that says nothing at its end has nothing to remark.
     assert_eq!(report.remarks, Vec::<String>::new());
 }
@@ -545,9 +535,7 @@ fn a_program_that_stops_where_rounding_is_as_large_as_a_value_is_not_blamed() {
     let outcome = |precision: Precision, id: &str, steps: usize| {
         let mut program = Shows::new(move |problem: &ProblemFile| {
             let mut shown = Trace::empty(problem.dimensions());
-            let Expected::Trace(certified) = &published(&problem.id).expected else {
-                panic!("a trace")
-            };
+            let certified = certified(published(&problem.id));
             for place in certified.all_places().filter(|place| place.0 <= steps) {
                 if let Some(values) = certified.get(place.0, place.1, place.2) {
                     shown.set(place.0, place.1, place.2, values.clone());
@@ -571,9 +559,7 @@ fn a_program_that_stops_where_rounding_is_as_large_as_a_value_is_not_blamed() {
     }
     let (precision, id) = (Precision::Single, DROWNING);
     let case = published(id);
-    let Expected::Trace(certified) = &case.expected else {
-        panic!("a trace")
-    };
+    let certified = certified(case);
     let reference = Reference::new(&case.problem, Some(certified), &[], precision).unwrap();
     let first = certified
         .all_places()
@@ -595,16 +581,10 @@ const DROWNING: &str = "zhu2016.kalman.run";
 fn a_value_that_is_right_by_other_means_does_not_hide_a_mistake() {
     let id = "mixed-spread-omitted";
     let answer = |problem: &ProblemFile| {
-        let mut planted = Planted {
-            variants: vec![id.into()],
-            level: Level::Everything,
-        };
-        let Answer::Steps { trace, .. } = planted.run(problem) else {
+        let Answer::Steps { trace, .. } = planted(&[id]).run(problem) else {
             panic!("an answer")
         };
-        let Expected::Trace(certified) = &published(&problem.id).expected else {
-            panic!("a trace")
-        };
+        let certified = certified(published(&problem.id));
         let mut shown = trace;
         let covariance = certified.get(1, Q::CombinedCovariance, 0).unwrap();
         assert_ne!(shown.get(1, Q::CombinedCovariance, 0), Some(covariance));
@@ -621,9 +601,7 @@ fn a_value_that_is_right_by_other_means_does_not_hide_a_mistake() {
 #[test]
 fn what_is_not_finite_is_not_explained_by_what_gives_a_number() {
     let answer = |problem: &ProblemFile| {
-        let Expected::Trace(certified) = &published(&problem.id).expected else {
-            panic!("a trace")
-        };
+        let certified = certified(published(&problem.id));
         let mut shown = certified.clone();
         shown.set(1, Q::CombinedMean, 0, vec![f64::NAN; 4]);
         shown
@@ -772,23 +750,15 @@ fn what_may_be_a_convention_is_not_called_a_mistake() {
 fn a_declared_convention_is_right_and_an_undeclared_one_is_named() {
     let id = "log-likelihood-without-two-pi";
     let variant = find(id).unwrap();
-    let planted = || Planted {
-        variants: vec![id.into()],
-        level: Level::Everything,
-    };
-    let undeclared = verdict(&mut planted(), "step.n4-m2.two-modes");
+    let undeclared = verdict(&mut planted(&[id]), "step.n4-m2.two-modes");
     assert_eq!(undeclared.diagnosis, Diagnosis::One(vec![variant]));
-    let declared = verdict(&mut Declared(planted(), id), "step.n4-m2.two-modes");
+    let declared = verdict(&mut Declared(planted(&[id]), id), "step.n4-m2.two-modes");
     assert_eq!(
         (declared.diagnosis, &declared.cases[0].outcome),
         (Diagnosis::Nothing, &Outcome::Right)
     );
     // Who declares it and does not have it is another.
-    let own = Planted {
-        variants: vec![],
-        level: Level::Everything,
-    };
-    let other = verdict(&mut Declared(own, id), "step.n4-m2.two-modes");
+    let other = verdict(&mut Declared(planted(&[]), id), "step.n4-m2.two-modes");
     assert_eq!(other.cases[0].outcome, Outcome::Wrong);
     assert_eq!(other.faults().next().unwrap().1.place, (1, Q::LogLikelihood, 0));
 }
@@ -856,11 +826,7 @@ impl Scene {
     /// What the own filter with these variants shows of a problem.
     fn planted(problem: &ProblemFile, variants: &[&str]) -> Self {
         let (certified, _) = run_in_doubles(problem).unwrap();
-        let mut planted = Planted {
-            variants: variants.iter().map(|&id| id.to_owned()).collect(),
-            level: Level::Everything,
-        };
-        let Answer::Steps { trace, error: None } = planted.run(problem) else {
+        let Answer::Steps { trace, error: None } = planted(variants).run(problem) else {
             panic!("{variants:?}: an answer")
         };
         let mut scene = Self::of(problem, &certified);
@@ -927,7 +893,7 @@ fn what_was_done(scenes: &[Scene]) -> String {
         .map(|scene| Evidence {
             case: scene.case(),
             passed: BTreeSet::new(),
-            is_faulty: scene.shown != run_in_doubles(&scene.problem).unwrap().0,
+            is_faulty: scene.shown != scene.reference.trace,
         })
         .collect();
     in_words(&diagnose(&evidence, &[]).unwrap())
@@ -963,6 +929,21 @@ fn published(id: &str) -> &'static Published {
         .unwrap_or_else(|| panic!("no case {id}"))
 }
 
+fn certified(case: &Published) -> &Trace {
+    let Expected::Trace(trace) = &case.expected else {
+        panic!("a trace")
+    };
+    trace
+}
+
+/// The own filter with these variants, which shows everything.
+fn planted(variants: &[&str]) -> Planted {
+    Planted {
+        variants: variants.iter().map(|&id| id.to_owned()).collect(),
+        level: Level::Everything,
+    }
+}
+
 fn verdict(subject: &mut dyn Subject, id: &str) -> Report {
     let selection = Selection {
         ids: vec![id.into()],
@@ -975,17 +956,9 @@ fn verdict(subject: &mut dyn Subject, id: &str) -> Report {
 
 /// A report of one case.
 fn report(outcome: Outcome, diagnosis: Diagnosis) -> Report {
-    let problem = Scene::new().problem;
     let case = CaseReport {
-        id: problem.id.clone(),
-        filter: problem.filter.clone(),
-        dimensions: problem.dimensions(),
         outcome,
-        judgement: None,
-        judged: 0,
-        of: 0,
-        digits: None,
-        stopped: None,
+        ..CaseReport::new(&Scene::new().problem)
     };
     Report {
         ready: Ready::default(),

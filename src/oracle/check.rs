@@ -7,7 +7,7 @@ use super::case::{self, BadCase, Case, Expected};
 use super::diagnose::{Diagnosis, Evidence, diagnose};
 use super::invalid::Invalid;
 use super::judge::{self, Finding, Judged, Judgement, LIMIT, Reference};
-use super::problem::FilterFile;
+use super::problem::{FilterFile, ProblemFile};
 use super::subject::{Answer, Broken, Precision, Ready, Subject, echoed};
 use super::trace::{Dimensions, Trace};
 use super::variant::{Variant, catalogue};
@@ -140,6 +140,21 @@ pub struct CaseReport {
 }
 
 impl CaseReport {
+    /// The report of a case before anything of it is judged.
+    pub fn new(problem: &ProblemFile) -> Self {
+        Self {
+            id: problem.id.clone(),
+            filter: problem.filter.clone(),
+            dimensions: problem.dimensions(),
+            outcome: Outcome::NothingShown,
+            judgement: None,
+            judged: 0,
+            of: 0,
+            digits: None,
+            stopped: None,
+        }
+    }
+
     /// The columns of a quantity of the case.
     pub fn columns(&self, quantity: Quantity) -> usize {
         let Dimensions { n, m, r, .. } = self.dimensions;
@@ -317,17 +332,7 @@ pub fn check(subject: &mut dyn Subject, selection: &Selection, progress: &dyn Fn
 type JudgedAnswer = (CaseReport, Option<(Trace, Reference)>);
 
 fn judge_answer(case: &Case, answer: Answer, ready: &Ready, conventions: &[&str]) -> Result<JudgedAnswer, Invalid> {
-    let mut report = CaseReport {
-        id: case.problem.id.clone(),
-        filter: case.problem.filter.clone(),
-        dimensions: case.problem.dimensions(),
-        outcome: Outcome::NothingShown,
-        judgement: None,
-        judged: 0,
-        of: 0,
-        digits: None,
-        stopped: None,
-    };
+    let mut report = CaseReport::new(&case.problem);
     let expected = match &case.expected {
         Expected::Trace(trace) => trace,
         Expected::Rejection(class) => {

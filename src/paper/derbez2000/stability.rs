@@ -314,6 +314,5 @@ pub fn local_instability(s: &Specification) -> Judgement {
          measurements 60, 60: in the third step the gain of CA is [{gain}] and (I − KH)F has an eigenvalue of magnitude 1.21, at least 6/5 by the Schur-Cohn \
          test on enclosures of the whole run. For CV none was found in runs. It is local: the next gains are others.",
     );
-    let verdict = proven_by(found);
-    s.judgement("derbez2000-local-instability", verdict, evidence)
+    s.judgement("derbez2000-local-instability", proven_by(found), evidence)
 }
