@@ -377,6 +377,10 @@ impl Real for Counting {
         let depends = if self.is_constant() { x } else { self };
         depends.function(value, |tally| tally.functions += 1)
     }
+
+    fn stumpff(&self, k: usize) -> Self {
+        self.function(self.value.stumpff(k), |tally| tally.functions += 1)
+    }
 }
 
 impl PartialEq for Counting {

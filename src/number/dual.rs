@@ -202,6 +202,13 @@ impl<T: Real> Real for Dual<T> {
         let squared = x.value.clone() * x.value.clone() + y.value.clone() * y.value.clone();
         Self::new(y.value.atan2(&x.value), turned / squared)
     }
+
+    /// d c_k(t) = ½(k c₍k+2₎(t) − c₍k+1₎(t)) dt.
+    fn stumpff(&self, k: usize) -> Self {
+        let (next, second) = (self.value.stumpff(k + 1), self.value.stumpff(k + 2));
+        let factor = T::integer(i64::try_from(k).unwrap_or(i64::MAX));
+        self.chain(self.value.stumpff(k), (factor * second - next) / T::integer(2))
+    }
 }
 
 impl<T: PartialOrd> PartialOrd for Dual<T> {

@@ -23,7 +23,7 @@
 //!
 //! Three traits say what an equation needs, and an equation has the weakest bound it can live with:
 //! [`Field`] (+ − × ÷), [`Roots`] (the square roots of rationals, all that cubature points need) and [`Real`]
-//! (roots, exp, ln, sin, cos, atan2, π, and an order).
+//! (roots, exp, ln, sin, cos, atan2, the Stumpff functions, π, and an order).
 //!
 //! An operation that has no answer (a division by zero, say) is a value that says so, [`Field::undecided`], and never a
 //! panic: it is unequal to everything, itself included, and every operation on it gives it again.
@@ -161,4 +161,32 @@ pub trait Real: Roots + PartialOrd {
     /// The angle of the point (`x`, `self`) in (−π, π]: `y.atan2(&x)`.
     #[must_use]
     fn atan2(&self, x: &Self) -> Self;
+    /// The Stumpff function c_k of this number.
+    ///
+    /// ```text
+    /// c_k(t) = Σⱼ (−t)ʲ/(2j + k)!
+    ///
+    /// c₀(θ²) = cos θ,   c₁(θ²) = sin θ / θ,   c₂(θ²) = (1 − cos θ)/θ²,   c₃(θ²) = (θ − sin θ)/θ³
+    /// ```
+    ///
+    /// Why: these quotients have a value at θ = 0 that a division cannot give. The functions c_k have no singularity, and
+    /// c_k(0) = 1/k!; for t < 0 they are the quotients of cosh and sinh.
+    ///
+    /// Source: K. Stumpff, Himmelsmechanik I, 1959. Two identities tie them together: c_k(t) = 1/k! − t c₍k+2₎(t) and
+    /// c_k′ = ½(k c₍k+2₎ − c₍k+1₎).
+    ///
+    /// Example: the limits at zero, exactly, and a half turn: sin π / π is 0 and (1 − cos π)/π² is 2/π².
+    ///
+    /// ```
+    /// use immaculate::number::Real;
+    ///
+    /// assert_eq!([0, 1, 2, 3].map(|k| 0.0_f64.stumpff(k)), [1.0, 1.0, 0.5, 1.0 / 6.0]);
+    /// let square = f64::pi() * f64::pi();
+    /// assert!(square.stumpff(1).abs() < 1e-16 && (square.stumpff(2) * square - 2.0).abs() < 1e-15);
+    /// ```
+    ///
+    /// Evidence: `stumpff_functions_contain_their_series_with_remainder` (enclosed),
+    /// `each_stumpff_function_is_tied_to_the_one_two_above`, `the_slope_of_a_stumpff_function_is_made_of_the_next_two` (property).
+    #[must_use]
+    fn stumpff(&self, k: usize) -> Self;
 }

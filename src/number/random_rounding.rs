@@ -250,6 +250,10 @@ impl Real for RandomRounding {
     fn atan2(&self, x: &Self) -> Self {
         perturbed(Real::atan2(&self.0, &x.0))
     }
+
+    fn stumpff(&self, k: usize) -> Self {
+        perturbed(self.0.stumpff(k))
+    }
 }
 
 impl PartialOrd for RandomRounding {

@@ -13,6 +13,7 @@
 //! | `arithmetic` | balls, and + − × ÷ √                                                               |
 //! | `series`     | exponential, sine, cosine, arcus tangent, π and ln 2 on integers, errors counted   |
 //! | `elementary` | the same functions on balls                                                        |
+//! | `stumpff`    | the Stumpff functions on balls                                                     |
 //! | `output`     | what can be read off an enclosure: doubles, decimals, widths                       |
 //!
 //! Why integers, and not a library for floating numbers of any precision: the proof would rest on the rounding of that library, and
@@ -30,6 +31,7 @@ mod dyadic;
 mod elementary;
 mod output;
 mod series;
+mod stumpff;
 
 use super::operators::{division_operators, ring_operators};
 use super::{Field, Rational, Real, Roots, Surd};
@@ -258,6 +260,10 @@ impl Real for Enclosure {
     /// by 2π cannot be enclosed.
     fn atan2(&self, x: &Self) -> Self {
         self.combine(x, elementary::atan2)
+    }
+
+    fn stumpff(&self, k: usize) -> Self {
+        self.map(|t, precision| stumpff::stumpff(k, t, precision))
     }
 }
 
