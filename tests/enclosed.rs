@@ -8,7 +8,8 @@
 // Doubles are compared exactly: that they are equal to the last bit is what these laws say.
 #![allow(clippy::float_cmp)]
 
-use immaculate::number::{Enclosure, Field, Rational, Real, Roots, Surd};
+use immaculate::model::motion::{constant_velocity, coordinated_turn, integrated_noise, turn_noise};
+use immaculate::number::{Dual, Enclosure, Field, Rational, Real, Roots, Surd};
 use num_bigint::BigInt;
 use num_integer::Integer;
 use num_traits::{One, Zero};
@@ -167,6 +168,14 @@ fn exact_angle(y: &Rational, x: &Rational) -> Bracket {
     } else {
         upper
     }
+}
+
+/// Σ (−x)ʲ/(2j + k)! for |x| ≤ 441: what follows 70 terms is below 2 · 441⁷⁰/140! < 2⁻¹⁸⁰.
+fn exact_stumpff(k: i64, x: &Rational) -> Bracket {
+    assert!(x.abs() <= Rational::integer(441));
+    let (p, q) = nested(&-x, 70, |n| (2 * n + k - 1) * (2 * n + k));
+    let factorial: BigInt = (1..=k).map(BigInt::from).product();
+    cut(&p, &(q * factorial), small(180))
 }
 
 // What is drawn
@@ -519,6 +528,110 @@ fn images_of_points_are_inside_the_image_of_the_ball() {
 }
 
 #[test]
+fn stumpff_functions_contain_their_series_with_remainder() {
+    for k in 0..=11_usize {
+        let order = i64::try_from(k).unwrap();
+        let seed = 400 + 10 * u64::try_from(k).unwrap();
+        let point = |draw: &mut Draw| Enclosure::exact(short_point(draw));
+        check_function(seed, point, |t| t.stumpff(k), |t| exact_stumpff(order, t));
+        check_function(seed + 1, short_ball, |t| t.stumpff(k), |t| exact_stumpff(order, t));
+        // As far as the other functions take over, on both sides; points, narrow balls, and those that reach over zero.
+        let far = |draw: &mut Draw| {
+            let middle = short_point(draw) * 70.0;
+            draw.ball_around(middle)
+        };
+        check_function(seed + 2, far, |t| t.stumpff(k), |t| exact_stumpff(order, t));
+    }
+    // The series with the other sign is another function.
+    Enclosure::with_precision(60, || {
+        let one = Rational::one();
+        assert!(exact_stumpff(1, &one).is_inside(&Enclosure::one().stumpff(1)));
+        assert!(!exact_stumpff(1, &-one).is_inside(&Enclosure::one().stumpff(1)));
+    });
+}
+
+#[test]
+fn a_stumpff_function_around_zero_is_as_narrow_as_its_argument() {
+    Enclosure::with_precision(256, || {
+        for k in 0..=11 {
+            let t = Enclosure::around(0.0, 1e-60);
+            let value = t.stumpff(k);
+            assert!(value.width() <= 1.1e-60, "{k}: {value}");
+            let factorial: i64 = (1..=i64::try_from(k).unwrap()).product();
+            assert!(value.contains(&Rational::new(1, factorial)));
+        }
+        // The quotient that it stands for has no answer there.
+        let angle = Enclosure::around(0.0, 1e-60);
+        assert!(!(angle.sin() / angle).is_decided());
+        // Of a ball as wide as this, only the bound of all t ≥ 0 is known; of one that reaches far below zero, much less.
+        let wide = Enclosure::around(1e6, 1e6).stumpff(2);
+        let half = Rational::new(1, 2);
+        assert!(wide.contains(&half) && wide.contains(&-half) && wide.magnitude() < 0.500_001);
+        assert!(
+            Enclosure::around(0.0, 1e4)
+                .stumpff(0)
+                .contains(&Rational::integer(10).pow(43))
+        );
+        assert!(!Enclosure::exact(-power_of_two(100)).stumpff(1).is_decided());
+        assert!(Enclosure::exact(power_of_two(200)).stumpff(2).is_decided());
+    });
+}
+
+#[test]
+fn a_turn_whose_rate_is_enclosed_around_zero_is_decided() {
+    Enclosure::with_precision(256, || {
+        let (rate, interval, density) = (
+            Enclosure::around(0.0, 1e-60),
+            Enclosure::integer(2),
+            Enclosure::integer(3),
+        );
+        let turn = coordinated_turn(&rate, &interval);
+        let noise = turn_noise(&density, &rate, &interval);
+        for (turned, straight) in turn.iter().zip(&constant_velocity(&interval)) {
+            assert!(turned.contains(&straight.lower()) && turned.width() < 1e-59, "{turned}");
+        }
+        for (turned, straight) in noise.iter().zip(&integrated_noise(&density, &interval)) {
+            assert!(turned.contains(&straight.lower()) && turned.width() < 1e-58, "{turned}");
+        }
+        // From the quotient as it is printed there is no matrix.
+        assert!(!((rate.clone() * interval.clone()).sin() / rate).is_decided());
+        // And at zero itself the matrices are those of constant velocity, as points.
+        assert_eq!(
+            coordinated_turn(&Enclosure::zero(), &interval),
+            constant_velocity(&interval)
+        );
+    });
+}
+
+/// For t > 0: six units of the result, and what two units of t move it by. For t < 0: six units and √−t of the result, which is what
+/// half a unit of √−t does to its exponential, twice.
+#[test]
+fn stumpff_functions_of_doubles_are_those_of_enclosures() {
+    let unit = power_of_two(-53);
+    let mut draw = Draw::new(430);
+    let mut largest = [0.0_f64; 2];
+    for round in 0..30_000_u32 {
+        let k = (round % 12) as usize;
+        let exponent = i32::try_from(draw.below(24)).unwrap() - 7;
+        let t = draw.double(53, exponent);
+        let (value, moved, error) = Enclosure::with_precision(120, || {
+            let dual = Dual::variable(Enclosure::exact(t)).stumpff(k);
+            let error = (dual.value().clone() - Enclosure::exact(t.stumpff(k))).magnitude();
+            (dual.value().magnitude(), (t * dual.slope().middle()).abs(), error)
+        });
+        let units = if t > 0.0 {
+            6.0 * value + 2.0 * moved
+        } else {
+            (6.0 + t.abs().sqrt()) * value
+        };
+        let part = &mut largest[usize::from(t > 0.0)];
+        *part = part.max(error / (unit * units));
+    }
+    // The bounds hold, and are not slack.
+    assert!(largest.iter().all(|part| (0.3..1.0).contains(part)), "{largest:?}");
+}
+
+#[test]
 fn angles_of_wide_boxes_are_those_of_their_corners() {
     Enclosure::with_precision(60, || {
         // The box from (1/2, −1) to (3/2, 11) sees the origin from far more than a right angle's half.
@@ -723,6 +836,8 @@ fn results_that_fit_the_precision_are_points() {
         exact(Enclosure::one().ln(), &Rational::zero());
         exact(Enclosure::zero().sin(), &Rational::zero());
         exact(Enclosure::zero().cos(), &Rational::one());
+        exact(Enclosure::zero().stumpff(0), &Rational::one());
+        exact(Enclosure::zero().stumpff(2), &Rational::new(1, 2));
         exact(Enclosure::zero().atan2(&eight), &Rational::zero());
         exact(
             Enclosure::exact(1.0) + Enclosure::exact(power_of_two(-59)),
@@ -814,6 +929,7 @@ fn what_has_no_answer_is_undecided() {
             nothing.sin(),
             nothing.cos(),
             nothing.atan2(&one),
+            nothing.stumpff(2),
         ] {
             undecided(value);
         }

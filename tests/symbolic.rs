@@ -15,7 +15,7 @@ use immaculate::imm::diagonal_mixing;
 use immaculate::imm::probability::{mixing_probability, predicted_mode_probability};
 use immaculate::matrix::{ldl, quadratic_form, solve};
 use immaculate::model::motion::{
-    acceleration_input, acceleration_noise, constant_velocity, integrated_noise, turn_matrix, turn_noise,
+    acceleration_input, acceleration_noise, constant_velocity, integrated_noise, turn_matrix, turn_noise_matrix,
 };
 use immaculate::model::wiener::{
     acceleration_noise_in_the_plane, constant_acceleration_in_the_plane, constant_velocity_in_the_plane, in_the_plane,
@@ -429,12 +429,14 @@ fn constant_velocity_noise_is_its_integral() {
 fn turn_noise_is_its_integral() {
     let (q, rate, t) = (unknown("q"), unknown("omega"), unknown("t"));
     let angle = Angle::of("u");
-    let noise = |interval: &Unknown, angle: &Angle| turn_noise(&q, &rate, interval, &angle.sine, &angle.cosine);
+    let noise = |interval: &Unknown, angle: &Angle| angle.noise(&q, &rate, interval);
     let growth = derivative(|h| noise(&(t.clone() + h.clone()), &angle.later(&rate, h)));
     let driven = angle.turn(&rate) * on_velocities();
     let expected = (&driven * driven.transpose()) * q.clone();
     assert_eq!(growth, expected);
-    assert_eq!(noise(&Unknown::zero(), &Angle::zero()), Matrix4::zeros());
+    // At T = 0, where c₂ = 1/2 and c₃ = 1/6.
+    let (zero, half, sixth) = (Unknown::zero(), Unknown::ratio(1, 2), Unknown::ratio(1, 6));
+    assert_eq!(turn_noise_matrix(&q, &zero, &zero, &half, &sixth), Matrix4::zeros());
     // Over two intervals.
     let (s, second) = (unknown("s"), Angle::of("v"));
     let carried = angle.turn(&rate) * noise(&s, &second) * angle.turn(&rate).transpose();
@@ -457,7 +459,7 @@ fn turn_and_noise_tend_to_those_of_constant_velocity() {
         sine: power(1) - power(3) / number(6) + rest("u", 5),
         cosine: Unknown::one() - power(2) / number(2) + rest("v", 4),
     };
-    let noise = turn_noise(&q, &rate, &t, &angle.sine, &angle.cosine);
+    let noise = angle.noise(&q, &rate, &t);
     let at_rate_zero = |entry: &Unknown| at_zero("omega", entry);
     let turn = angle.turn(&rate);
     assert_eq!(turn.map(|entry| at_rate_zero(&entry)), constant_velocity(&t));
@@ -1098,8 +1100,18 @@ impl Angle {
     }
 
     fn turn(&self, rate: &Unknown) -> Matrix4<Unknown> {
-        let versine = Unknown::one() - self.cosine.clone();
-        turn_matrix(rate, &self.sine, &self.cosine, &versine)
+        let along = self.sine.clone() / rate.clone();
+        let across = (Unknown::one() - self.cosine.clone()) / rate.clone();
+        turn_matrix(&along, &across, &self.sine, &self.cosine)
+    }
+
+    /// The noise of the turn, with c₂(θ²) = (1 − cos θ)/θ² and c₃(θ²) = (θ − sin θ)/θ³.
+    fn noise(&self, density: &Unknown, rate: &Unknown, interval: &Unknown) -> Matrix4<Unknown> {
+        let angle = rate * interval;
+        let square = &angle * &angle;
+        let c_2 = (Unknown::one() - &self.cosine) / square.clone();
+        let c_3 = (&angle - &self.sine) / (square * &angle);
+        turn_noise_matrix(density, interval, &angle, &c_2, &c_3)
     }
 }
 

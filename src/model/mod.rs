@@ -27,7 +27,8 @@
 //! // Straight it is at (3, 4), √(3² + 4²) away.
 //! assert_eq!(range.of(&(constant_velocity(&1.0) * state)), vector![5.0]);
 //! // With a quarter turn to the left, sin ωT = 1 and cos ωT = 0 at 3 rad/s, at (1, 4 + 1): √(1² + 5²).
-//! assert_eq!(range.of(&(turn_matrix(&3.0, &1.0, &0.0, &1.0) * state)), vector![26.0_f64.sqrt()]);
+//! let third = 1.0 / 3.0; // sin ωT / ω and (1 − cos ωT)/ω
+//! assert_eq!(range.of(&(turn_matrix(&third, &third, &1.0, &0.0) * state)), vector![26.0_f64.sqrt()]);
 //! ```
 
 pub mod acceleration;

@@ -126,8 +126,15 @@ pub fn constant_velocity<T: Field>(interval: &T) -> Matrix4<T> {
 /// | ω     | `turn_rate` | rad/s | rate of turn, positive to the left   |
 /// | T     | `interval`  | s     | the sampling interval                |
 ///
-/// Why: the velocity turns with rate ω, and the position is its integral. At ω = 0 the quotients are replaced by their limits, T
-/// and 0: constant velocity. 1 − cos ωT is evaluated as 2 sin²(ωT/2), the same number without its cancellation.
+/// Why: the velocity turns with rate ω, and the position is its integral. The two quotients are evaluated as Stumpff functions
+/// ([`Real::stumpff`]), with θ = ωT:
+///
+/// ```text
+/// sin ωT / ω = T c₁(θ²),     (1 − cos ωT)/ω = T θ c₂(θ²)
+/// ```
+///
+/// They have a value at ω = 0, T and 0: constant velocity. So a rate that is only known to be near zero has a matrix too, and so has its
+/// derivative by ω.
 ///
 /// Example: a quarter turn to the left in one second, eastward at π/2 m/s. That is a circle of radius 1 m: the target ends at (1, 1),
 /// northward.
@@ -146,18 +153,16 @@ pub fn constant_velocity<T: Field>(interval: &T) -> Matrix4<T> {
 /// Errata: both papers print turn rates of ±3° without "per second", and in degrees.
 ///
 /// Evidence: `motion_composes_over_time` (symbolic), `a_turn_of_rate_zero_is_constant_velocity` (exact),
-/// `a_slow_turn_tends_to_constant_velocity` (property).
+/// `a_turn_whose_rate_is_enclosed_around_zero_is_decided` (enclosed), `a_slow_turn_tends_to_constant_velocity` (property).
 pub fn coordinated_turn<T: Real>(turn_rate: &T, interval: &T) -> Matrix4<T> {
-    if *turn_rate == T::zero() {
-        return constant_velocity(interval);
-    }
     let angle = turn_rate.clone() * interval.clone();
-    let half_sine = (angle.clone() / T::integer(2)).sin();
-    let one_minus_cosine = T::integer(2) * half_sine.clone() * half_sine;
-    turn_matrix(turn_rate, &angle.sin(), &angle.cos(), &one_minus_cosine)
+    let square = angle.clone() * angle.clone();
+    let along = interval.clone() * square.stumpff(1);
+    let across = interval.clone() * angle.clone() * square.stumpff(2);
+    turn_matrix(&along, &across, &angle.sin(), &angle.cos())
 }
 
-/// The matrix of [`coordinated_turn`] from sin ωT, cos ωT and 1 − cos ωT — zhu2016 (61), liu2017 (29).
+/// The matrix of [`coordinated_turn`] from sin ωT / ω, (1 − cos ωT)/ω, sin ωT and cos ωT — zhu2016 (61), liu2017 (29).
 ///
 /// Example: the same quarter turn in exact numbers, sine 1 and cosine 0, at 2 rad/s and 2 m/s.
 ///
@@ -166,21 +171,15 @@ pub fn coordinated_turn<T: Real>(turn_rate: &T, interval: &T) -> Matrix4<T> {
 /// use nalgebra::vector;
 ///
 /// // x: 2 · 1/2, ẋ: 2 · 0, y: 2 · (1 − 0)/2, ẏ: 2 · 1
-/// assert_eq!(turn_matrix(&2.0, &1.0, &0.0, &1.0) * vector![0.0, 2.0, 0.0, 0.0], vector![1.0, 0.0, 1.0, 2.0]);
+/// assert_eq!(turn_matrix(&0.5, &0.5, &1.0, &0.0) * vector![0.0, 2.0, 0.0, 0.0], vector![1.0, 0.0, 1.0, 2.0]);
 /// ```
 ///
 /// Evidence: as [`coordinated_turn`].
 #[rustfmt::skip]
-pub fn turn_matrix<T: Field>(
-    turn_rate: &T,
-    sine: &T,
-    cosine: &T,
-    one_minus_cosine: &T,
-) -> Matrix4<T> {
+pub fn turn_matrix<T: Field>(along: &T, across: &T, sine: &T, cosine: &T) -> Matrix4<T> {
     let (o, l) = (T::zero, T::one);
     let (s, c) = (|| sine.clone(), || cosine.clone());
-    let along = || sine.clone() / turn_rate.clone();
-    let across = || one_minus_cosine.clone() / turn_rate.clone();
+    let (along, across) = (|| along.clone(), || across.clone());
     Matrix4::new(
         l(), along(), o(), -across(), //
         o(), c(), o(), -s(), //
@@ -233,7 +232,7 @@ pub fn integrated_noise<T: Field>(density: &T, interval: &T) -> Matrix4<T> {
     )
 }
 
-/// Noise covariance of a coordinated turn under white acceleration noise, from sin ωT and cos ωT.
+/// Noise covariance of a coordinated turn under white acceleration noise.
 ///
 /// ```text
 ///           ⎡ 2(T − s/ω)/ω²   (1 − c)/ω²      0               (T − s/ω)/ω ⎤
@@ -242,38 +241,60 @@ pub fn integrated_noise<T: Field>(density: &T, interval: &T) -> Matrix4<T> {
 ///           ⎣ (T − s/ω)/ω     0               (1 − c)/ω²      T           ⎦
 /// ```
 ///
-/// Source: the integral at the head of this file along [`turn_matrix`]; neither paper uses it. As ω → 0 it tends to
+/// The quotients are 2T³ c₃(θ²), T² c₂(θ²) and T² θ c₃(θ²) with θ = ωT, as in [`coordinated_turn`]. At ω = 0 they are those of
 /// [`integrated_noise`].
+///
+/// Source: the integral at the head of this file along [`coordinated_turn`]; neither paper uses it.
 ///
 /// Example: a quarter turn at 1 rad/s, which takes T = π/2, with q = 1. What [`integrated_noise`] lacks is the last block: noise on one
 /// axis is carried into the other.
 ///
 /// ```
-/// use immaculate::model::motion::turn_noise;
+/// use immaculate::model::motion::{integrated_noise, turn_noise};
 /// use nalgebra::matrix;
 ///
 /// let t = std::f64::consts::FRAC_PI_2;
-/// let noise = turn_noise(&1.0, &1.0, &t, &1.0, &0.0);
+/// let noise = turn_noise(&1.0, &1.0, &t);
 /// let lag = t - 1.0; // T − sin ωT / ω
-/// assert_eq!(noise.fixed_view::<2, 2>(0, 0), matrix![2.0 * lag, 1.0; 1.0, t]);
-/// assert_eq!(noise.fixed_view::<2, 2>(0, 2), matrix![0.0, lag; -lag, 0.0]);
+/// // Three roundings of numbers up to 2.
+/// let off = noise.fixed_view::<2, 2>(0, 0) - matrix![2.0 * lag, 1.0; 1.0, t];
+/// assert!(off.amax() <= 3.0 * f64::EPSILON);
+/// let off = noise.fixed_view::<2, 2>(0, 2) - matrix![0.0, lag; -lag, 0.0];
+/// assert!(off.amax() <= 3.0 * f64::EPSILON);
+/// // Straight on, the same as an integral of polynomials.
+/// assert_eq!(turn_noise(&3.0, &0.0, &2.0), integrated_noise(&3.0, &2.0));
 /// ```
 ///
-/// Evidence: `turn_noise_is_its_integral` (symbolic).
+/// Evidence: `turn_noise_is_its_integral` (symbolic), `a_turn_whose_rate_is_enclosed_around_zero_is_decided` (enclosed).
+pub fn turn_noise<T: Real>(density: &T, turn_rate: &T, interval: &T) -> Matrix4<T> {
+    let angle = turn_rate.clone() * interval.clone();
+    let square = angle.clone() * angle.clone();
+    turn_noise_matrix(density, interval, &angle, &square.stumpff(2), &square.stumpff(3))
+}
+
+/// The matrix of [`turn_noise`] from θ = ωT, c₂(θ²) and c₃(θ²).
+///
+/// Source: as [`turn_noise`].
+///
+/// Example: θ = 0, where c₂ = 1/2 and c₃ = 1/6.
+///
+/// ```
+/// use immaculate::model::motion::{integrated_noise, turn_noise_matrix};
+/// use immaculate::number::{Field, Rational};
+///
+/// let [three, two, zero] = [3, 2, 0].map(Rational::integer);
+/// let noise = turn_noise_matrix(&three, &two, &zero, &Rational::new(1, 2), &Rational::new(1, 6));
+/// assert_eq!(noise, integrated_noise(&three, &two));
+/// ```
+///
+/// Evidence: as [`turn_noise`].
 #[rustfmt::skip]
-pub fn turn_noise<T: Field>(
-    density: &T,
-    turn_rate: &T,
-    interval: &T,
-    sine: &T,
-    cosine: &T,
-) -> Matrix4<T> {
-    let (w, q) = (|| turn_rate.clone(), || density.clone());
-    let lag = || interval.clone() - sine.clone() / w();
-    let position = || q() * T::integer(2) * lag() / (w() * w());
-    let mixed = || q() * (T::one() - cosine.clone()) / (w() * w());
-    let velocity = || q() * interval.clone();
-    let across = || q() * lag() / w();
+pub fn turn_noise_matrix<T: Field>(density: &T, interval: &T, angle: &T, c_2: &T, c_3: &T) -> Matrix4<T> {
+    let (q, t) = (|| density.clone(), || interval.clone());
+    let position = || q() * T::integer(2) * t() * t() * t() * c_3.clone();
+    let mixed = || q() * t() * t() * c_2.clone();
+    let velocity = || q() * t();
+    let across = || q() * t() * t() * angle.clone() * c_3.clone();
     let o = T::zero;
     Matrix4::new(
         position(), mixed(), o(), across(), //
