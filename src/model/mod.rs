@@ -36,8 +36,10 @@ pub mod angle;
 pub mod conversion;
 pub mod conversion_moments;
 pub mod conversion_validity;
+pub mod formula;
 pub mod measurement;
 pub mod motion;
+pub mod nearest;
 pub mod wiener;
 
 pub use conversion::Conversion;
