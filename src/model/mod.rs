@@ -40,6 +40,7 @@ pub mod formula;
 pub mod measurement;
 pub mod motion;
 pub mod nearest;
+pub mod space;
 pub mod wiener;
 
 pub use conversion::Conversion;
