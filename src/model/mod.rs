@@ -37,6 +37,7 @@ pub mod conversion;
 pub mod conversion_moments;
 pub mod conversion_validity;
 pub mod formula;
+pub mod function;
 pub mod measurement;
 pub mod motion;
 pub mod nearest;
