@@ -625,7 +625,12 @@ proptest! {
     }
 
     #[test]
-    fn a_changed_formula_is_read_or_refused(text in right_formulas(), at in any::<prop::sample::Index>(), piece in nearly_formulas(), left_out in 0_usize..4) {
+    fn a_changed_formula_is_read_or_refused(
+        text in right_formulas(),
+        at in any::<prop::sample::Index>(),
+        piece in nearly_formulas(),
+        left_out in 0_usize..4,
+    ) {
         let characters: Vec<char> = text.chars().collect();
         let at = at.index(characters.len());
         let rest = characters[at..].iter().skip(left_out);

@@ -756,8 +756,8 @@ fn rational_functions_print_as_they_are_written() {
 // Doubles
 
 /// The results of the elementary functions as bits. They come from libm 0.2 and are the same on every platform; each is
-/// within one unit in the last place of the exact value, but for the Stumpff functions, whose own test has their bound. A difference here means that this platform, or another version
-/// of libm, changes every trace.
+/// within one unit in the last place of the exact value, but for the Stumpff functions, whose bound has its own test. A difference here
+/// means that this platform, or another version of libm, changes every trace.
 #[test]
 fn elementary_functions_have_the_same_bits_on_every_platform() {
     for (x, bits) in [

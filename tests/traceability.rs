@@ -254,6 +254,10 @@ const WITHOUT_SOURCE: [(&str, &[&str]); 5] = [
             "formulas",
             "given",
             "is_linear",
+            "of",
+            "models",
+            "model",
+            "name",
         ],
     ),
 ];

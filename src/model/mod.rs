@@ -12,6 +12,9 @@
 //! Reading order: [`motion`], [`measurement`] and [`angle`] are all that zhu2016 and liu2017 need; [`acceleration`] is derbez2000's target;
 //! [`wiener`] and the three files of the conversion are sustika2015's.
 //!
+//! Models that no paper prints are data: [`space`] says what a vector is, [`formula`] reads functions from text, [`function`] is f or h of
+//! either form, [`registry`] has the named models of `spec/models.toml`, and [`binding`] fits one to a state.
+//!
 //! State order is [x, ẋ, y, ẏ] in metres and metres per second, and in [`wiener`] [x, y, ẋ, ẏ, ẍ, ÿ]; turn rates are in radians per
 //! second, positive to the left.
 //!
@@ -33,6 +36,7 @@
 
 pub mod acceleration;
 pub mod angle;
+pub mod binding;
 pub mod conversion;
 pub mod conversion_moments;
 pub mod conversion_validity;
@@ -41,6 +45,7 @@ pub mod function;
 pub mod measurement;
 pub mod motion;
 pub mod nearest;
+pub mod registry;
 pub mod space;
 pub mod wiener;
 

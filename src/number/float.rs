@@ -96,7 +96,8 @@ impl Real for f64 {
 
     /// From c₁ or c₂ upwards by c_k = (1/(k−2)! − c₍k−2₎)/t where |t| > k², and by the series else, so that neither cancels.
     ///
-    /// The error, with u = 2⁻⁵³: for t > 0 at most 6u of the result and what 2u of t move it by; for t < 0 at most (6 + √−t) u of the result.
+    /// The error, with u = 2⁻⁵³: for t > 0 at most 6u of the result and what 2u of t move it by; for t < 0 at most (6 + √−t) u of the
+    /// result.
     ///
     /// Evidence: `stumpff_functions_of_doubles_are_those_of_enclosures` (enclosed).
     fn stumpff(&self, k: usize) -> Self {

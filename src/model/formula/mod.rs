@@ -133,6 +133,22 @@ impl Formulas {
     }
 
     /// The values of the formulas, from those of the names; undecided where an operation has no answer, or a value is missing.
+    ///
+    /// Source: each operation in the number system of the values, in the order in which it is written.
+    ///
+    /// Example: twelve certified digits of the diagonal of a square.
+    ///
+    /// ```
+    /// use immaculate::model::formula::Formulas;
+    /// use immaculate::number::Enclosure;
+    ///
+    /// let diagonal = Formulas::read(&["side"], &[], &[("diagonal", "hypot(side, side)")])?;
+    /// let value = Enclosure::with_precision(60, || diagonal.at(&[Enclosure::exact(1.0)])[0].to_decimal(12));
+    /// assert_eq!(value.unwrap(), "1.41421356237e0");
+    /// # Ok::<(), immaculate::model::formula::InvalidFormula>(())
+    /// ```
+    ///
+    /// Evidence: `operations_bind_as_in_a_textbook`, `every_number_system_runs_the_same_formula` (exact).
     pub fn at<T: Real>(&self, values: &[T]) -> Vec<T> {
         self.evaluate(values, Elementary::of)
     }
