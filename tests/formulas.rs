@@ -261,9 +261,16 @@ fn sentence(text: &str) -> String {
     refused.expect_err(text).to_string()
 }
 
+/// Each text with the sentence that refuses it.
+fn check_sentences(cases: &[(&str, &str)]) {
+    for (text, expected) in cases {
+        assert_eq!(sentence(text), format!("formula of `x`, {expected}"));
+    }
+}
+
 #[test]
-fn a_refusal_is_one_sentence_with_the_place() {
-    for (text, expected) in [
+fn names_and_calls_are_refused_with_their_place() {
+    check_sentences(&[
         ("", "column 1, at ``: nothing is written"),
         (" \t", "column 1, at ` \\t`: nothing is written"),
         (
@@ -283,15 +290,6 @@ fn a_refusal_is_one_sentence_with_the_place() {
             "column 1, at `log(x)`: there is no function `log`; the nearest name is `ln`",
         ),
         (
-            "(x + vx",
-            "column 8, at `(x + vx`: the parenthesis of column 1 is not closed before the end",
-        ),
-        (
-            "sin(x",
-            "column 6, at `sin(x`: the parenthesis of column 4 is not closed before the end",
-        ),
-        ("x + vx)", "column 7, at `x + vx)`: no parenthesis is open here"),
-        (
             "atan2(x)",
             "column 1, at `atan2(x)`: `atan2` takes 2 arguments and not 1",
         ),
@@ -300,6 +298,37 @@ fn a_refusal_is_one_sentence_with_the_place() {
             "column 3, at `2*sin(x, vx)`: `sin` takes 1 argument and not 2",
         ),
         ("sin()", "column 1, at `sin()`: `sin` takes 1 argument and not 0"),
+        (
+            "x(vx)",
+            "column 1, at `x(vx)`: `x` is a number and not a function; a product is written `x*(…)`",
+        ),
+        (
+            "pi(2)",
+            "column 1, at `pi(2)`: `pi` is a number and not a function; a product is written `pi*(…)`",
+        ),
+        (
+            "sin + x",
+            "column 1, at `sin + x`: `sin` is a function; its argument stands in parentheses, as in `sin(…)`",
+        ),
+        (
+            "c10(x)",
+            "column 1, at `c10(x)`: there is no function `c10`: the Stumpff functions are c0 to c9",
+        ),
+    ]);
+}
+
+#[test]
+fn signs_and_powers_are_refused_with_their_place() {
+    check_sentences(&[
+        (
+            "(x + vx",
+            "column 8, at `(x + vx`: the parenthesis of column 1 is not closed before the end",
+        ),
+        (
+            "sin(x",
+            "column 6, at `sin(x`: the parenthesis of column 4 is not closed before the end",
+        ),
+        ("x + vx)", "column 7, at `x + vx)`: no parenthesis is open here"),
         (
             "x, vx",
             "column 2, at `x, vx`: a comma only stands between the arguments of a function; decimals have a point",
@@ -323,22 +352,6 @@ fn a_refusal_is_one_sentence_with_the_place() {
         ("2 x", "column 3, at `2 x`: an operator is missing before `x`"),
         ("2x", "column 2, at `2x`: an operator is missing before `x`"),
         ("(x)(vx)", "column 4, at `(x)(vx)`: an operator is missing before `(`"),
-        (
-            "x(vx)",
-            "column 1, at `x(vx)`: `x` is a number and not a function; a product is written `x*(…)`",
-        ),
-        (
-            "pi(2)",
-            "column 1, at `pi(2)`: `pi` is a number and not a function; a product is written `pi*(…)`",
-        ),
-        (
-            "sin + x",
-            "column 1, at `sin + x`: `sin` is a function; its argument stands in parentheses, as in `sin(…)`",
-        ),
-        (
-            "c10(x)",
-            "column 1, at `c10(x)`: there is no function `c10`: the Stumpff functions are c0 to c9",
-        ),
         (
             "x^y",
             "column 3, at `x^y`: an exponent is an integer in digits, such as `2` or `-1`; other powers are `sqrt(a)` and `exp(b*ln(a))`",
@@ -364,13 +377,19 @@ fn a_refusal_is_one_sentence_with_the_place() {
             "x/0",
             "column 3, at `x/0`: what stands here is a constant, exactly zero, and is divided by",
         ),
-        ("1e400*x", "column 1, at `1e400*x`: `1e400` is larger than every double"),
-        ("1e99999*x", "column 1, at `1e99999*x`: `1e99999` is not a number"),
-        (".*x", "column 1, at `.*x`: `.` is not a number"),
         (
             "sqrt(-4)",
             "column 1, at `sqrt(-4)`: `sqrt` has no value at this constant",
         ),
+    ]);
+}
+
+#[test]
+fn characters_and_numbers_are_refused_with_their_place() {
+    check_sentences(&[
+        ("1e400*x", "column 1, at `1e400*x`: `1e400` is larger than every double"),
+        ("1e99999*x", "column 1, at `1e99999*x`: `1e99999` is not a number"),
+        (".*x", "column 1, at `.*x`: `.` is not a number"),
         (
             "x[1]",
             "column 2, at `x[1]`: `[` does not belong in a formula; components are named, and parentheses are round",
@@ -404,9 +423,7 @@ fn a_refusal_is_one_sentence_with_the_place() {
             "column 2, at `x\\u{0}`: `\\u{0}` does not belong in a formula",
         ),
         ("\"x\"", "column 1, at `\"x\"`: `\"` does not belong in a formula"),
-    ] {
-        assert_eq!(sentence(text), format!("formula of `x`, {expected}"));
-    }
+    ]);
     // Columns are characters, and a long text is cut around the place.
     let long = format!(
         "{} + ä + {}",

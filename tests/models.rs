@@ -338,7 +338,9 @@ fn equation_of_motion(id: &str, of: &dyn Fn(&str) -> Enclosure, component: &str)
         ("random-walk", _)
         | ("constant-velocity", "vx" | "vy" | "vz")
         | ("constant-acceleration", "ax")
-        | ("constant-jerk", "jx") => Enclosure::zero(),
+        | ("constant-jerk", "jx")
+        | ("constant-turn-rate-and-speed", "v")
+        | (_, "w" | "a") => Enclosure::zero(),
         ("coordinated-turn" | "coordinated-turn-unknown-rate", "vx") => -of("w") * of("vy"),
         ("coordinated-turn" | "coordinated-turn-unknown-rate", "vy") => of("w") * of("vx"),
         ("singer", "ax") => -of("alpha") * of("ax"),
@@ -357,7 +359,6 @@ fn equation_of_motion(id: &str, of: &dyn Fn(&str) -> Enclosure, component: &str)
                 _ => v() * slip.cos() * tangent / (of("front") + of("rear")),
             }
         }
-        (_, "v" | "w" | "a") => Enclosure::zero(),
         (_, position @ ("x" | "y" | "z")) => of(&format!("v{position}")),
         (_, velocity) if velocity.starts_with('v') => of(&velocity.replace('v', "a")),
         (_, acceleration) => of(&acceleration.replace('a', "j")),
@@ -735,6 +736,6 @@ fn a_model_that_does_not_fit_says_why() {
     assert_eq!(model("").unwrap_err().to_string(), "there is no model ``");
     assert_eq!(
         model(&"ω".repeat(100_000)).unwrap_err().to_string().chars().count(),
-        64 + 22
+        64 + 20
     );
 }

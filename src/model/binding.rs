@@ -158,7 +158,7 @@ impl Model {
             };
             formulas.push([of_state.to_owned(), text]);
         }
-        bound.function(self.definitions_for(&bound), formulas)
+        bound.function(&self.definitions_for(&bound), &formulas)
     }
 
     /// The covariance Q of a motion's noise for a state, by rows, as a function of the state and of the step length `T`; zero for
@@ -197,7 +197,7 @@ impl Model {
                 formulas.push([format!("Q_{row}_{column}"), text.unwrap_or_else(|| "0".to_owned())]);
             }
         }
-        bound.function(definitions, formulas)
+        bound.function(&definitions, &formulas)
     }
 
     /// What a sensor gives of a state: the space of the measurement, and h.
@@ -224,29 +224,16 @@ impl Model {
     ///
     /// [`InvalidModel`] as for a motion.
     ///
-    /// Evidence: `every_worked_example_has_the_digits_that_are_written` (enclosed), `measurements_are_the_plain_function_to_the_bit` (exact).
+    /// Evidence: `every_worked_example_has_the_digits_that_are_written` (enclosed),
+    /// `measurements_are_the_plain_function_to_the_bit` (exact).
     pub fn measurement(
         &self,
         state: &Space,
         parameters: &[(&str, Rational)],
     ) -> Result<(Space, Function), InvalidModel> {
         let bound = Bound::of(self, ModelKind::Measurement, state, parameters)?;
-        let function = bound.function(self.definitions_for(&bound), bound.written_out(&self.formulas))?;
-        Ok((Space::new(self.parts(&self.measured, &bound.axes))?, function))
-    }
-
-    /// The components of a list with their axes written out, axis by axis.
-    fn parts(&self, parts: &[Part], axes: &[String]) -> Vec<Component> {
-        let mut written = Vec::new();
-        for axis in axes {
-            for Part(part) in parts {
-                written.push(Component {
-                    name: on_axis(&part.name, axis),
-                    ..part.clone()
-                });
-            }
-        }
-        written
+        let function = bound.function(&self.definitions_for(&bound), &bound.written_out(&self.formulas))?;
+        Ok((Space::new(on_axes(&self.measured, &bound.axes))?, function))
     }
 
     /// The definitions, those that name an axis for each axis.
@@ -307,6 +294,20 @@ impl Model {
     }
 }
 
+/// The components of a list with their axes written out, axis by axis.
+fn on_axes(parts: &[Part], axes: &[String]) -> Vec<Component> {
+    let mut written = Vec::with_capacity(parts.len() * axes.len());
+    for axis in axes {
+        for Part(part) in parts {
+            written.push(Component {
+                name: on_axis(&part.name, axis),
+                ..part.clone()
+            });
+        }
+    }
+    written
+}
+
 /// The name of an entry of G.
 fn entry_of_input(component: &str, source: usize) -> String {
     format!("G_{component}_{source}")
@@ -342,7 +343,7 @@ impl<'a> Bound<'a> {
             return Err(InvalidModel::Kind { id: id(), is, wanted });
         }
         let axes = axes_of(model, state);
-        let needed = model.parts(&model.state, &axes);
+        let needed = on_axes(&model.state, &axes);
         let names: Vec<&str> = needed.iter().map(|component| component.name.as_str()).collect();
         if let Some(lacking) = Lacking::of(&model.id, &names, &state.names()) {
             return Err(lacking.into());
@@ -383,7 +384,7 @@ impl<'a> Bound<'a> {
         written
     }
 
-    fn function(&self, definitions: Vec<[String; 2]>, formulas: Vec<[String; 2]>) -> Result<Function, InvalidModel> {
+    fn function(&self, definitions: &[[String; 2]], formulas: &[[String; 2]]) -> Result<Function, InvalidModel> {
         fn pairs(texts: &[[String; 2]]) -> Vec<(&str, &str)> {
             texts
                 .iter()
@@ -393,13 +394,7 @@ impl<'a> Bound<'a> {
         let state: Vec<&str> = self.names.iter().map(String::as_str).collect();
         let step = self.has_step.then_some(STEP).into_iter();
         let given: Vec<&str> = step.chain(self.inputs.iter().map(|[name, _]| name.as_str())).collect();
-        let function = Function::of_formulas(
-            &state,
-            &given,
-            &self.parameters,
-            &pairs(&definitions),
-            &pairs(&formulas),
-        )?;
+        let function = Function::of_formulas(&state, &given, &self.parameters, &pairs(definitions), &pairs(formulas))?;
         Ok(function)
     }
 }

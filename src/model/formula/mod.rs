@@ -96,7 +96,7 @@ struct Entry {
 pub struct Formulas {
     names: Vec<String>,
     definitions: Vec<Entry>,
-    formulas: Vec<Entry>,
+    results: Vec<Entry>,
     operations: Vec<Operation>,
 }
 
@@ -123,7 +123,7 @@ impl Formulas {
 
     /// What the formulas give, in order.
     pub fn results(&self) -> Vec<&str> {
-        self.formulas.iter().map(|entry| entry.name.as_str()).collect()
+        self.results.iter().map(|entry| entry.name.as_str()).collect()
     }
 
     /// Whether a name is used, in a formula or a definition.
@@ -189,7 +189,7 @@ impl Formulas {
     ///
     /// Evidence: `a_jacobian_is_the_limit_of_difference_quotients` (symbolic), `every_model_has_the_slopes_of_its_differences` (enclosed).
     pub fn jacobian_at<T: Real>(&self, values: &[T], by: usize) -> Vec<Vec<T>> {
-        let mut rows = vec![Vec::with_capacity(by); self.formulas.len()];
+        let mut rows = vec![Vec::with_capacity(by); self.results.len()];
         for column in 0..by {
             let mut changing = Vec::with_capacity(values.len());
             for (index, value) in values.iter().enumerate() {
@@ -221,7 +221,7 @@ impl Formulas {
     /// ```
     pub fn is_linear_in(&self, by: usize) -> bool {
         let degrees = self.degrees(by);
-        self.formulas.iter().all(|entry| degrees[entry.result] <= 1)
+        self.results.iter().all(|entry| degrees[entry.result] <= 1)
     }
 
     /// The degree of every operation in the first so many names: 0, 1, or 2 for everything that is no polynomial of degree one.
@@ -272,7 +272,7 @@ impl Formulas {
             };
             results.push(result);
         }
-        let of_formulas = self.formulas.iter().map(|entry| results[entry.result].clone());
+        let of_formulas = self.results.iter().map(|entry| results[entry.result].clone());
         of_formulas.collect()
     }
 }

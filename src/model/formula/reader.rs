@@ -67,7 +67,7 @@ pub(super) fn read(
     Ok(Formulas {
         names: names.iter().map(|name| (*name).to_owned()).collect(),
         definitions: names_of_definitions.zip(building.defined).map(entry).collect(),
-        formulas: read,
+        results: read,
         operations: building.operations,
     })
 }

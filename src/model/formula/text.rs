@@ -27,12 +27,13 @@ pub struct Written {
 }
 
 /// How tightly a text holds together, from a sum to what needs no parentheses anywhere.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 enum Tightness {
     Sum,
     Sign,
     Product,
     Power,
+    #[default]
     Atom,
 }
 
@@ -56,7 +57,7 @@ impl Formulas {
         };
         Written {
             definitions: texts(&self.definitions),
-            formulas: texts(&self.formulas),
+            formulas: texts(&self.results),
         }
     }
 
@@ -100,12 +101,6 @@ impl Formulas {
                 (text + ")", Tightness::Atom)
             }
         }
-    }
-}
-
-impl Default for Tightness {
-    fn default() -> Self {
-        Self::Atom
     }
 }
 
