@@ -350,6 +350,8 @@ fn signs_and_powers_are_refused_with_their_place() {
             "column 2, at `()`: a number, name or parenthesis is missing before `)`",
         ),
         ("2 x", "column 3, at `2 x`: an operator is missing before `x`"),
+        ("2exp(x)", "column 2, at `2exp(x)`: an operator is missing before `exp`"),
+        ("2e", "column 2, at `2e`: an operator is missing before `e`"),
         ("2x", "column 2, at `2x`: an operator is missing before `x`"),
         ("(x)(vx)", "column 4, at `(x)(vx)`: an operator is missing before `(`"),
         (
@@ -501,7 +503,16 @@ fn a_division_that_can_have_no_answer_is_refused() {
         assert!(sentence(text).ends_with("has no value at this constant"), "{text}");
     }
     // What is not a constant is not judged, nor is 0.1 · 3 − 0.3, which is not zero in doubles taken exactly.
-    for text in ["1/x", "1/(x - x)", "1/(0.1*3 - 0.3)", "1/sin(pi)", "0/2", "x^-1"] {
+    for text in [
+        "1/x",
+        "1/(x - x)",
+        "1/(0.1*3 - 0.3)",
+        "1/(sqrt(2) - 1)",
+        "1/(sqrt(1/2) - 1)",
+        "1/sin(pi)",
+        "0/2",
+        "x^-1",
+    ] {
         assert!(read(&[text]).is_ok(), "{text}");
     }
     assert!(!read(&["1/(x - x)"]).unwrap().at(&[3.0])[0].is_decided());
@@ -743,8 +754,8 @@ proptest! {
         let weights = [weight, 1.0 - weight];
         let mean = measurement.mean(&weights, &[vector(a), vector(b)], &vector(centre));
         prop_assert_eq!(&polar().mean(&weights, &[a.to_vec(), b.to_vec()], &centre)[..], mean.as_slice());
-        // The bearing is not averaged as a number where it jumps.
-        if (a[1] - centre[1]).abs() > 3.2 && weight > 0.01 {
+        // The bearing is not averaged as a number where only one of both jumps: it is off by a whole turn times the weight.
+        if (a[1] - centre[1]).abs() > 3.2 && (b[1] - centre[1]).abs() < 3.1 && weight > 0.01 {
             prop_assert!((mean[1] - (weights[0] * a[1] + weights[1] * b[1])).abs() > 1e-3);
         }
     }

@@ -66,13 +66,9 @@ fn bits(value: &Rational) -> u64 {
         .map_or(u64::MAX, |value| value.numer().bits() + value.denom().bits())
 }
 
-/// A power, unless it has too many bits.
+/// A power. The exponent is small, so that it has no more than a few ten thousand bits before it is given up.
 fn power(value: &Rational, exponent: i64) -> Option<Rational> {
-    let size = exponent.unsigned_abs();
-    if bits(value).saturating_mul(size) > MOST_BITS {
-        return None;
-    }
-    let power = value.pow(u32::try_from(size).ok()?);
+    let power = value.pow(u32::try_from(exponent.unsigned_abs()).ok()?);
     Some(if exponent < 0 { Rational::one() / power } else { power })
 }
 
