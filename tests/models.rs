@@ -11,8 +11,8 @@ use immaculate::model::function::Function;
 use immaculate::model::motion::{
     acceleration_noise, constant_velocity, coordinated_turn, integrated_noise, turn_noise,
 };
-use immaculate::model::registry::{Example, Model, ModelKind, Part, model, models};
-use immaculate::model::space::{Component, Kind, Space};
+use immaculate::model::registry::{Example, ListedComponent, Model, ModelKind, model, models};
+use immaculate::model::space::{Component, ComponentKind, Space};
 use immaculate::model::{Measurement, PolarComponent, acceleration, wiener};
 use immaculate::number::{Dual, Enclosure, Field, Rational, RationalFunction, Real};
 use nalgebra::{SMatrix, SVector, matrix};
@@ -62,7 +62,7 @@ fn every_row_is_complete() {
         } else {
             &row.measured
         };
-        let expected: Vec<&str> = parts.iter().map(|Part(part)| part.name.as_str()).collect();
+        let expected: Vec<&str> = parts.iter().map(|ListedComponent(part)| part.name.as_str()).collect();
         assert_eq!(gives, expected, "{id}: what the formulas give");
         for brackets in [('{', '}'), ('[', ']')] {
             let count = |c| row.latex.matches(c).count();
@@ -85,7 +85,7 @@ fn every_parameter_and_component_of_a_row_is_used() {
             assert!(formulas.uses(name), "{}: {name}", row.id);
         }
         for [name, _] in &example.state {
-            let is_extra = row.axes.is_empty() && !row.state.iter().any(|Part(part)| part.name == *name);
+            let is_extra = row.axes.is_empty() && !row.state.iter().any(|ListedComponent(part)| part.name == *name);
             let is_idle = row.kind == ModelKind::Noise
                 || is_extra
                 || row.id == "position"
@@ -131,7 +131,7 @@ fn space(row: &Model, example: &Example) -> Space {
         let is_angle = row
             .state
             .iter()
-            .any(|Part(part)| part.name == *name && part.kind == Kind::Angle);
+            .any(|ListedComponent(part)| part.name == *name && part.kind == ComponentKind::Angle);
         if is_angle {
             Component::angle(name)
         } else {

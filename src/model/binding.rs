@@ -7,8 +7,8 @@
 
 use super::function::{Function, InvalidFunction, Lacking};
 use super::nearest::nearest;
-use super::registry::{Model, ModelKind, Part};
-use super::space::{Component, InvalidSpace, Kind, Space};
+use super::registry::{ListedComponent, Model, ModelKind};
+use super::space::{Component, ComponentKind, InvalidSpace, Space};
 use crate::number::Rational;
 use thiserror::Error;
 
@@ -53,9 +53,9 @@ pub enum InvalidModel {
         /// The component.
         component: String,
         /// What the state says.
-        in_state: Kind,
+        in_state: ComponentKind,
         /// What the model says.
-        in_model: Kind,
+        in_model: ComponentKind,
     },
     /// The state has components that the motion does not move.
     #[error(
@@ -101,10 +101,10 @@ pub enum InvalidModel {
 }
 
 /// A kind of component in a sentence.
-fn described(kind: Kind) -> &'static str {
+fn described(kind: ComponentKind) -> &'static str {
     match kind {
-        Kind::Number => "a number",
-        Kind::Angle => "an angle",
+        ComponentKind::Number => "a number",
+        ComponentKind::Angle => "an angle",
     }
 }
 
@@ -253,7 +253,7 @@ impl Model {
     fn entries_of_input(&self, bound: &Bound) -> Vec<[String; 2]> {
         let mut definitions = Vec::new();
         for axis in &bound.axes {
-            for (Part(component), row) in self.state.iter().zip(&self.input) {
+            for (ListedComponent(component), row) in self.state.iter().zip(&self.input) {
                 for (source, text) in row.iter().enumerate() {
                     definitions.push([
                         entry_of_input(&on_axis(&component.name, axis), source),
@@ -270,7 +270,7 @@ impl Model {
         let place = |axis: &str, name: &str| {
             self.state
                 .iter()
-                .position(|Part(part)| on_axis(&part.name, axis) == name)
+                .position(|ListedComponent(part)| on_axis(&part.name, axis) == name)
         };
         let mut axes = bound.axes.iter();
         let (axis, i, j) = axes.find_map(|axis| Some((axis, place(axis, row)?, place(axis, column)?)))?;
@@ -295,10 +295,10 @@ impl Model {
 }
 
 /// The components of a list with their axes written out, axis by axis.
-fn on_axes(parts: &[Part], axes: &[String]) -> Vec<Component> {
+fn on_axes(parts: &[ListedComponent], axes: &[String]) -> Vec<Component> {
     let mut written = Vec::with_capacity(parts.len() * axes.len());
     for axis in axes {
-        for Part(part) in parts {
+        for ListedComponent(part) in parts {
             written.push(Component {
                 name: on_axis(&part.name, axis),
                 ..part.clone()
@@ -406,7 +406,10 @@ fn axes_of(model: &Model, state: &Space) -> Vec<String> {
         return vec![String::new()];
     }
     let is_there = |axis: &&String| {
-        let mut names = model.state.iter().map(|Part(part)| on_axis(&part.name, axis));
+        let mut names = model
+            .state
+            .iter()
+            .map(|ListedComponent(part)| on_axis(&part.name, axis));
         names.any(|name| state.position(&name).is_some())
     };
     let axes: Vec<String> = model.axes.iter().filter(is_there).cloned().collect();

@@ -4,7 +4,7 @@
 //! [`super::binding`].
 
 use super::nearest::nearest;
-use super::space::{Component, Kind};
+use super::space::{Component, ComponentKind};
 use serde::Deserialize;
 use std::sync::LazyLock;
 use thiserror::Error;
@@ -46,16 +46,16 @@ pub struct Model {
     #[serde(default)]
     pub axes: Vec<String>,
     /// The components of the state that it needs.
-    pub state: Vec<Part>,
+    pub state: Vec<ListedComponent>,
     /// What a measurement gives.
     #[serde(default)]
-    pub measured: Vec<Part>,
+    pub measured: Vec<ListedComponent>,
     /// What is given at every step besides the step length: name and unit.
     #[serde(default)]
     pub inputs: Vec<[String; 2]>,
     /// What is bound once.
     #[serde(default)]
-    pub parameters: Vec<Parameter>,
+    pub parameters: Vec<ModelParameter>,
     /// Names for formulas, in order.
     #[serde(default)]
     pub definitions: Vec<[String; 2]>,
@@ -87,15 +87,15 @@ pub struct Model {
 /// A component as the file writes it: name, unit, and perhaps `angle`.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "Vec<String>")]
-pub struct Part(pub Component);
+pub struct ListedComponent(pub Component);
 
-impl TryFrom<Vec<String>> for Part {
+impl TryFrom<Vec<String>> for ListedComponent {
     type Error = String;
 
     fn try_from(words: Vec<String>) -> Result<Self, String> {
         let kind = match words.get(2).map(String::as_str) {
-            None => Kind::Number,
-            Some("angle") => Kind::Angle,
+            None => ComponentKind::Number,
+            Some("angle") => ComponentKind::Angle,
             Some(other) => return Err(format!("`{other}` is no kind of component; there is `angle`")),
         };
         match &words[..] {
@@ -112,7 +112,7 @@ impl TryFrom<Vec<String>> for Part {
 /// What is bound once.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Parameter {
+pub struct ModelParameter {
     /// Its name in the formulas.
     pub name: String,
     /// Its unit.

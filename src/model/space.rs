@@ -15,7 +15,7 @@ use thiserror::Error;
 
 /// Whether values that differ by a full turn are the same.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum ComponentKind {
     /// A number of the real line.
     Number,
     /// An angle in radians.
@@ -30,7 +30,7 @@ pub struct Component {
     /// The unit, for people.
     pub unit: String,
     /// Number or angle.
-    pub kind: Kind,
+    pub kind: ComponentKind,
 }
 
 impl Component {
@@ -39,7 +39,7 @@ impl Component {
         Self {
             name: name.to_owned(),
             unit: unit.to_owned(),
-            kind: Kind::Number,
+            kind: ComponentKind::Number,
         }
     }
 
@@ -48,7 +48,7 @@ impl Component {
         Self {
             name: name.to_owned(),
             unit: "rad".to_owned(),
-            kind: Kind::Angle,
+            kind: ComponentKind::Angle,
         }
     }
 }
@@ -102,7 +102,7 @@ impl Space {
         }
         check_names(components.iter().map(|component| component.name.as_str()))?;
         for component in &components {
-            if component.kind == Kind::Angle && component.unit != "rad" {
+            if component.kind == ComponentKind::Angle && component.unit != "rad" {
                 return Err(InvalidSpace::NotInRadians {
                     name: component.name.clone(),
                     unit: component.unit.clone(),
@@ -139,7 +139,7 @@ impl Space {
     pub fn is_angle(&self, component: usize) -> bool {
         self.components
             .get(component)
-            .is_some_and(|component| component.kind == Kind::Angle)
+            .is_some_and(|component| component.kind == ComponentKind::Angle)
     }
 
     /// The vector with its angles in (−π, π].
