@@ -500,6 +500,34 @@ fn every_noise_is_symmetric_and_no_variance_is_negative() {
     });
 }
 
+#[test]
+fn doubles_lose_of_singers_noise_what_its_row_says() {
+    let note = model("singer-white-noise").unwrap().note.as_ref().unwrap();
+    assert!(
+        note.contains("10⁻¹³ of itself at b = 2, 10⁻¹¹ at b = 4 and 10⁻⁸ at b = 8, and has no right digit at b = 20")
+    );
+    for (b, least, greatest) in [
+        (0.01, 0.0, 1e-14),
+        (2.0, 0.0, 1e-13),
+        (4.0, 0.0, 1e-11),
+        (8.0, 1e-12, 1e-8),
+        (20.0, 0.5, 1e9),
+    ] {
+        let parameters = [("alpha", Rational::from_f64(b)), ("variance", Rational::integer(1))];
+        let noise = model("singer-white-noise")
+            .unwrap()
+            .noise(&numbers(&LINE), &parameters)
+            .unwrap();
+        let doubles = noise.at(&[0.0; 3], &[1.0]);
+        Enclosure::with_precision(400, || {
+            let exact = noise.at(&[0.0; 3].map(Enclosure::exact), &[Enclosure::integer(1)]);
+            let off = |(double, exact): (&f64, &Enclosure)| ((double - exact.middle()) / exact.middle()).abs();
+            let worst = doubles.iter().zip(&exact).map(off).fold(0.0, f64::max);
+            assert!(worst >= least && worst < greatest, "{b}: {worst:e}");
+        });
+    }
+}
+
 // The plain functions of this crate
 
 /// The rows that name a plain function.
