@@ -3,7 +3,7 @@
 //! After this file the reader knows what the program promises of every file that it reads or writes, whatever happens meanwhile. What is
 //! read has a greatest length, so that no file and no pipe without an end fills the memory. What is written stands in a temporary file
 //! beside its place until all of it is on the disk, and takes its place in one step, so that whoever looks finds the old file or the new
-//! one, and after an interruption, too. The journal of a sweep is the one exception: it grows line by line and has its own promises.
+//! one, and after an interruption, too.
 
 use std::fs::{self, File};
 use std::io::{self, BufRead, ErrorKind, Read, Write};

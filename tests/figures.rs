@@ -244,7 +244,7 @@ fn draw_all() -> Vec<(String, String)> {
     all.push(("conversions".into(), conversion::figure().unwrap()));
     all.push(("figures-1-and-2".into(), long_term::figures_1_and_2(1).unwrap()));
     let sweep = Sweep::new(&Choices::default(), 2, 1).unwrap();
-    let points = sweep.run_without_journal(&|| ());
+    let points = sweep.run(&|| ());
     for trajectory in Trajectory::ALL {
         let svg = fit_error::draw(&points, trajectory, sweep.runs).unwrap();
         all.push((format!("sweep-{}", trajectory.name()), svg));

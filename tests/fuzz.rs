@@ -24,9 +24,6 @@ use immaculate::oracle::subject::{Level, Planted, Ready};
 use immaculate::oracle::trace::{Dimensions, Trace, read_json};
 use immaculate::paper::Paper;
 use immaculate::paper::specification::Choices;
-use immaculate::paper::sustika2015::journal::{Header, Journal, columns, line};
-use immaculate::paper::sustika2015::sweep::{Fit, Point, settings};
-use immaculate::statistics::Estimate;
 use immaculate::steady::verdict::{Depth, Verdict};
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
@@ -623,62 +620,6 @@ fn a_certificate_of_monsters_is_refused_in_time() {
             assert_sentence(&error.to_string());
         }
     }
-}
-
-/// The journal of a sweep: its first points, and the header that it must have.
-fn journal() -> (Header, String) {
-    let header = Header {
-        seed: 1,
-        runs: 2,
-        choices: "defaults".into(),
-    };
-    let estimate = |value: f64| Estimate {
-        value,
-        standard_error: value / 3.0,
-    };
-    let fit = Fit {
-        mean: estimate(1.5),
-        median: f64::NAN,
-        divergent: 1,
-        divergent_with_jump: 0,
-        failed: 0,
-    };
-    let point = Point {
-        runs_with_jump: 1,
-        fits: [fit; 3],
-        unscented_less_converted: estimate(1e-300),
-        plain_less_converted: estimate(1e22),
-    };
-    let lines: Vec<String> = settings().iter().take(3).map(|setting| line(setting, &point)).collect();
-    let head = "# immaculate-sweep/1; seed 1; runs 2; choices defaults";
-    (header, format!("{head}\n{}\n{}\n", columns(), lines.join("\n")))
-}
-
-/// A journal is refused, or it is gone on with, and then its file is the beginning of what was in it, line by line.
-#[test]
-fn a_damaged_journal_is_refused_or_a_beginning_of_itself() {
-    let place = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("fuzz-journal.csv");
-    let (header, text) = journal();
-    let fates = Fates::default();
-    let open = |bytes: &[u8]| {
-        std::fs::write(&place, bytes).unwrap();
-        Journal::open(&place, &header, &settings()).map(|(_, points)| points.len())
-    };
-    assert_eq!(open(text.as_bytes()), Ok(3));
-    proptest!(config(300, 14), |(damages in prop::collection::vec(any_damage(), 1..3))| {
-        let bytes = damaged(text.as_bytes(), &damages);
-        let outcome = in_time("a journal", || open(&bytes));
-        fates.count(outcome.is_ok());
-        match outcome {
-            Ok(points) => {
-                let kept = std::fs::read_to_string(&place).unwrap();
-                let is_beginning = bytes.starts_with(kept.as_bytes()) || kept.lines().count() == 2;
-                assert!(is_beginning && kept.lines().count() == points + 2, "{}", kept);
-            }
-            Err(error) => assert!(error.to_string().contains("fuzz-journal.csv"), "{}", error),
-        }
-    });
-    fates.assert_at_least(100, 50);
 }
 
 /// Every kind of file with damaged bytes, read as the program reads it.

@@ -1,7 +1,7 @@
-//! Goal: the simulations of sustika2015 are what they say, and a sweep that is interrupted ends as one that is not.
+//! Goal: the simulations of sustika2015 are what they say, and so is the table that a sweep writes.
 //!
 //! Method: laws of the truth, of what is seen of it and of the filters' parts; statistics of many runs with a fixed seed and a stated
-//! probability of a false alarm; and journals that are cut at every byte, continued, exchanged and spoilt. Kind of evidence: property, and
+//! probability of a false alarm; and a table that is read back. Kind of evidence: property, and
 //! statistical where it is said. What the simulations show is `tests/scenario.rs` and the claims.
 
 // What is exact is compared exactly.
@@ -18,11 +18,10 @@ use immaculate::paper::simulation::Simulation;
 use immaculate::paper::specification::{Choices, InvalidChoice};
 use immaculate::paper::sustika2015::contestants::Bearings;
 use immaculate::paper::sustika2015::divergence::{self, Tally};
-use immaculate::paper::sustika2015::journal::{BadJournal, Header, Journal, columns, line};
 use immaculate::paper::sustika2015::outcome::{Outcome, Track, outcomes};
 use immaculate::paper::sustika2015::scenario::Scenario;
 use immaculate::paper::sustika2015::sweep::{
-    self, Fit, Parameter, Point, Setting, Sweep, Trajectory as Swept, settings,
+    self, Fit, Parameter, Point, Setting, Sweep, Trajectory as Swept, columns, line, settings,
 };
 use immaculate::paper::sustika2015::truth::{Motion, Noise, Trajectory, bearing_jumps};
 use immaculate::paper::sustika2015::{
@@ -37,7 +36,6 @@ use nalgebra::{Matrix4, Matrix6, SMatrix, Vector2, Vector4, Vector6};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
-use std::path::{Path, PathBuf};
 
 // The truth
 
@@ -689,184 +687,60 @@ fn a_sweep_runs_all_trajectories_and_both_kinds_of_bearings() {
     assert!(Sweep::new(&Choices::of("window", "none"), 2, 1).is_err());
 }
 
-// The journal
+// The table of a sweep
 
 #[test]
-fn a_journal_that_is_cut_anywhere_is_continued_to_the_same_bytes() {
-    let (path, settings, points) = (file("cut"), few_settings(), few_points());
-    write(&path, &settings, &points);
-    let whole = std::fs::read(&path).unwrap();
-    for length in 0..=whole.len() {
-        std::fs::write(&path, &whole[..length]).unwrap();
-        let (mut journal, found) = Journal::open(&path, &header(), &settings).unwrap();
-        // Whole lines are kept, bit for bit, and a torn one is dropped.
-        let lines = whole[..length]
-            .split_inclusive(|byte| *byte == b'\n')
-            .filter(|line| line.ends_with(b"\n"))
-            .count();
-        assert_eq!(found.len(), lines.saturating_sub(2), "cut at {length}");
-        for (a, b) in found.iter().zip(&points) {
-            assert_eq!(bits(a), bits(b));
-        }
-        for (setting, point) in settings.iter().zip(&points).skip(found.len()) {
-            journal.append(setting, point).unwrap();
-        }
-        assert!(std::fs::read(&path).unwrap() == whole, "cut at {length}");
+fn the_table_of_a_sweep_says_what_was_run_and_has_a_line_a_setting() {
+    let sweep = Sweep::new(&Choices::of("window", "printed"), 50, 7).unwrap();
+    let points: Vec<(Setting, Point)> = few_settings().into_iter().zip(few_points()).collect();
+    let text = sweep.csv(&points);
+    let mut lines = text.lines();
+    assert_eq!(
+        lines.next(),
+        Some("# immaculate-sweep/1; seed 7; runs 50; choices window=printed")
+    );
+    assert_eq!(lines.next(), Some(columns().as_str()));
+    for (setting, point) in &points {
+        assert_eq!(lines.next(), Some(line(setting, point).as_str()));
     }
+    assert_eq!(lines.next(), None);
+    assert!(text.ends_with('\n'));
 }
 
+/// All kinds of doubles: each is read back from its line to the bit, so that a sign of zero or a last place that is lost is seen.
 #[test]
-fn a_point_is_in_the_journal_as_soon_as_it_is_finished() {
-    let (path, settings, points) = (file("soon"), few_settings(), few_points());
-    let (mut journal, _) = Journal::open(&path, &header(), &settings).unwrap();
-    for (count, (setting, point)) in settings.iter().zip(&points).enumerate() {
-        assert_eq!(std::fs::read_to_string(&path).unwrap().lines().count(), 2 + count);
-        journal.append(setting, point).unwrap();
-        assert!(
-            std::fs::read_to_string(&path)
-                .unwrap()
-                .ends_with(&format!("{}\n", line(setting, point)))
+fn a_number_of_the_table_is_read_back_to_the_bit() {
+    for (setting, point) in few_settings().iter().zip(few_points()) {
+        let written = line(setting, &point);
+        let read: Vec<f64> = written.split(',').skip(3).map(|field| field.parse().unwrap()).collect();
+        assert_eq!(
+            read.iter().map(|value| value.to_bits()).collect::<Vec<_>>(),
+            bits(&point),
+            "{written}"
         );
     }
 }
 
 #[test]
-fn a_sweep_that_was_interrupted_has_the_same_result() {
+fn a_sweep_runs_every_setting_in_order_and_counts_every_run() {
     let sweep = Sweep::new(&Choices::default(), 2, 7).unwrap();
-    let (path, other) = (file("whole"), file("interrupted"));
-    let whole = sweep.run(&path, &|| ()).unwrap();
-    assert_eq!(whole.len(), 280);
-    let bytes = std::fs::read(&path).unwrap();
-    // In the middle of a line, somewhere after the two hundredth setting.
-    let cut = bytes
-        .iter()
-        .enumerate()
-        .filter(|(_, byte)| **byte == b'\n')
-        .nth(202)
-        .unwrap()
-        .0
-        + 40;
-    std::fs::write(&other, &bytes[..cut]).unwrap();
     let steps = std::sync::atomic::AtomicUsize::new(0);
-    let count = || {
+    let points = sweep.run(&|| {
         steps.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-    };
-    let continued = sweep.run(&other, &count).unwrap();
-    assert_eq!(continued, whole);
-    assert!(std::fs::read(&other).unwrap() == bytes, "the journals differ");
-    assert_eq!(steps.into_inner(), 2 * 280, "progress counts what was already there");
-    // Finished: nothing is run and nothing is written.
-    assert_eq!(sweep.run(&other, &|| ()).unwrap(), whole);
-    assert!(std::fs::read(&other).unwrap() == bytes, "the journals differ");
-    assert_eq!(sweep.run_without_journal(&|| ())[..3], whole[..3]);
-}
-
-#[test]
-fn the_journal_of_another_sweep_is_refused_by_name() {
-    let (path, settings) = (file("other"), few_settings());
-    write(&path, &settings, &few_points());
-    let before = std::fs::read(&path).unwrap();
-    let others = [
-        (Header { seed: 2, ..header() }, "of seed 1, and the sweep is of seed 2"),
-        (
-            Header { runs: 51, ..header() },
-            "of runs 50, and the sweep is of runs 51",
-        ),
-        (
-            Header {
-                choices: "window=printed".to_owned(),
-                ..header()
-            },
-            "of choices defaults, and the sweep is of choices window=printed",
-        ),
-    ];
-    for (other, words) in others {
-        let sentence = Journal::open(&path, &other, &settings).unwrap_err().to_string();
-        assert!(
-            sentence.starts_with(&path.display().to_string()) && sentence.contains(words),
-            "{sentence}"
-        );
+    });
+    assert_eq!(
+        points.iter().map(|(setting, _)| *setting).collect::<Vec<_>>(),
+        settings()
+    );
+    assert_eq!(steps.into_inner(), 2 * 280);
+    for (setting, point) in points.iter().step_by(93) {
+        assert_eq!(*point, sweep.point(setting, &|| ()));
     }
-    assert_eq!(std::fs::read(&path).unwrap(), before, "a refused file is left as it is");
-}
-
-#[test]
-fn what_was_chosen_may_have_any_words() {
-    let (path, settings) = (file("words"), few_settings());
-    let odd = Header {
-        choices: "a; runs 7; b".to_owned(),
-        ..header()
-    };
-    let (mut journal, _) = Journal::open(&path, &odd, &settings).unwrap();
-    journal.append(&settings[0], &few_points()[0]).unwrap();
-    drop(journal);
-    assert_eq!(Journal::open(&path, &odd, &settings).unwrap().1.len(), 1);
-}
-
-#[test]
-fn what_is_no_journal_is_refused_and_left_alone() {
-    let (path, settings, points) = (file("spoilt"), few_settings(), few_points());
-    write(&path, &settings, &points);
-    let text = std::fs::read_to_string(&path).unwrap();
-    let first = line(&settings[0], &points[0]);
-    let spoilt = [
-        ("a,b\n1,2\n".to_owned(), "this is no journal of a sweep"),
-        (
-            "# immaculate-sweep/2; seed 1; runs 50; choices defaults\n".to_owned(),
-            "this is no journal of a sweep",
-        ),
-        (text.replacen("cmkf_median", "median", 1), "line 2: the columns are"),
-        (
-            text.replacen("straight", "crooked", 1),
-            "line 3: the setting `straight,noise-density,0.01` is expected",
-        ),
-        (
-            text.replacen(&first, &first.replace("0.01", "0.02"), 1),
-            "line 3: the setting",
-        ),
-        (
-            text.replacen(&first, &format!("{first},1"), 1),
-            "line 3: `1` comes after the last column",
-        ),
-        (
-            text.replacen(&first, first.rsplit_once(',').unwrap().0, 1),
-            "line 3: a column is missing",
-        ),
-        (text.replacen(&format!("{first}\n"), "", 1), "line 3: the setting"),
-        (
-            text.replacen(",7,", ",seven,", 1),
-            "line 3: `seven` is not a number of its column",
-        ),
-        (
-            text.replacen(",7,", ",07,", 1),
-            "line 3: a number is not as this program writes it",
-        ),
-        (format!("{text}{first}\n"), "there are more lines than settings"),
-    ];
-    for (content, words) in spoilt {
-        std::fs::write(&path, &content).unwrap();
-        let sentence = Journal::open(&path, &header(), &settings).unwrap_err().to_string();
-        assert!(
-            sentence.starts_with(&path.display().to_string()) && sentence.contains(words),
-            "{sentence}"
-        );
-        assert_eq!(std::fs::read_to_string(&path).unwrap(), content);
-    }
-    std::fs::write(&path, [b'#', 0xff, b'\n']).unwrap();
-    assert!(matches!(
-        Journal::open(&path, &header(), &settings),
-        Err(BadJournal::NoJournal { .. })
-    ));
-    let nowhere = path.with_file_name("no such folder").join("journal.csv");
-    assert!(matches!(
-        Journal::open(&nowhere, &header(), &settings),
-        Err(BadJournal::File { .. })
-    ));
 }
 
 /// Read by the names of its columns, as somebody else reads it: a difference is that of the two means that it names.
 #[test]
-fn a_column_of_the_journal_holds_what_it_is_called() {
+fn a_column_of_the_table_holds_what_it_is_called() {
     let sweep = Sweep::new(&Choices::default(), 3, 1).unwrap();
     let setting = Setting {
         trajectory: Swept::Manoeuvring,
@@ -905,21 +779,6 @@ fn a_line_has_a_field_for_every_column() {
 
 fn of(name: &str) -> Scenario {
     scenario(&Choices::of("scenario", name)).unwrap()
-}
-
-/// A place for a journal, of one test alone, without a file.
-fn file(name: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("sustika2015-{name}.csv"));
-    let _ = std::fs::remove_file(&path);
-    path
-}
-
-fn header() -> Header {
-    Header {
-        seed: 1,
-        runs: 50,
-        choices: "defaults".to_owned(),
-    }
 }
 
 fn few_settings() -> Vec<Setting> {
@@ -961,22 +820,14 @@ fn few_points() -> Vec<Point> {
     ]
 }
 
-fn write(path: &Path, settings: &[Setting], points: &[Point]) {
-    let (mut journal, found) = Journal::open(path, &header(), settings).unwrap();
-    assert!(found.is_empty());
-    for (setting, point) in settings.iter().zip(points) {
-        journal.append(setting, point).unwrap();
-    }
-}
-
-/// A point to the bit: NaN is equal to itself.
+/// The numbers of a point to the bit, in the order of the columns: NaN is equal to itself.
 fn bits(point: &Point) -> Vec<u64> {
     let of_estimate = |estimate: &Estimate| [estimate.value.to_bits(), estimate.standard_error.to_bits()];
     let of_fit = |fit: &Fit| {
-        let counts = [fit.divergent, fit.divergent_with_jump, fit.failed].map(|count| count as u64);
+        let counts = [fit.divergent, fit.divergent_with_jump, fit.failed].map(|count| (count as f64).to_bits());
         [&of_estimate(&fit.mean)[..], &[fit.median.to_bits()], &counts].concat()
     };
-    let mut bits = vec![point.runs_with_jump as u64];
+    let mut bits = vec![(point.runs_with_jump as f64).to_bits()];
     bits.extend(point.fits.iter().flat_map(of_fit));
     bits.extend(of_estimate(&point.unscented_less_converted));
     bits.extend(of_estimate(&point.plain_less_converted));

@@ -1,13 +1,12 @@
 //! `immaculate reproduce sustika2015 --sweep`: scenario 3 of that paper, 280 settings of what the filters take the noise to be.
 //!
-//! After this file the reader knows where the journal of a sweep is, from which an interrupted one goes on, and what else is written.
+//! After this file the reader knows which files a sweep writes: its points as CSV and as JSON, and two figures.
 
 use super::progress::bar;
 use super::{Refusal, json_text, make_directory, write_file};
 use immaculate::paper::Effort;
 use immaculate::paper::specification::Choices;
 use immaculate::paper::sustika2015::RUNS;
-use immaculate::paper::sustika2015::journal::BadJournal;
 use immaculate::paper::sustika2015::sweep::{Point, Setting, Sweep, Trajectory, settings};
 use immaculate::report::fit_error;
 use serde_json::json;
@@ -21,11 +20,13 @@ pub fn run(choices: &Choices, effort: Effort, directory: Option<&Path>, is_json:
         "sweeping {wide_bar} {pos}/{len} runs, {eta} left",
     );
     let advance = || bar.inc(1);
-    let points = match directory {
-        Some(directory) => with_files(&sweep, directory, &advance)?,
-        None => sweep.run_without_journal(&advance),
-    };
+    // A directory that cannot be written to is refused before the runs, not after them.
+    directory.map_or(Ok(()), make_directory)?;
+    let points = sweep.run(&advance);
     bar.finish_and_clear();
+    if let Some(directory) = directory {
+        write_files(&sweep, &points, directory)?;
+    }
     Ok(if is_json {
         json_text(&as_json(&sweep, &points))
     } else {
@@ -33,24 +34,18 @@ pub fn run(choices: &Choices, effort: Effort, directory: Option<&Path>, is_json:
     })
 }
 
-/// The sweep with a journal, and its figures.
-fn with_files(sweep: &Sweep, directory: &Path, advance: &(dyn Fn() + Sync)) -> Result<Vec<(Setting, Point)>, Refusal> {
-    make_directory(directory)?;
-    let journal = directory.join("sustika2015-sweep.csv");
-    let points = sweep.run(&journal, advance).map_err(|error| match error {
-        BadJournal::File { .. } => Refusal::Output(error.to_string()),
-        _ => Refusal::request(error),
-    })?;
+/// The points as a table, the figures, and the points as JSON.
+fn write_files(sweep: &Sweep, points: &[(Setting, Point)], directory: &Path) -> Result<(), Refusal> {
+    write_file(&directory.join("sustika2015-sweep.csv"), &sweep.csv(points))?;
     for (trajectory, name) in Trajectory::ALL.into_iter().zip(["figure-2", "figure-4"]) {
-        let figure = fit_error::draw(&points, trajectory, sweep.runs);
+        let figure = fit_error::draw(points, trajectory, sweep.runs);
         let figure = figure.map_err(|error| Refusal::Output(error.to_string()))?;
         write_file(&directory.join(format!("sustika2015-{name}.svg")), &figure)?;
     }
     write_file(
         &directory.join("sustika2015-sweep.json"),
-        &json_text(&as_json(sweep, &points)),
-    )?;
-    Ok(points)
+        &json_text(&as_json(sweep, points)),
+    )
 }
 
 fn as_json(sweep: &Sweep, points: &[(Setting, Point)]) -> serde_json::Value {

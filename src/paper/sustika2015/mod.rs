@@ -36,12 +36,10 @@
 //! - [`divergence`]: whether the unscented filter diverges because of the noises or because of the cut of the bearings;
 //! - [`outcome`]: what a run shows of both filters, and of the second with bearings that are never wrapped;
 //! - [`claims`]: the claims, each with its judge;
-//! - [`journal`]: the finished points of a sweep, in a file, from which it goes on after an interruption.
 
 pub mod claims;
 pub mod contestants;
 pub mod divergence;
-pub mod journal;
 pub mod operations;
 pub mod outcome;
 pub mod reasoning;

@@ -1,12 +1,11 @@
 //! Scenario 3: the filters' noise parameters, varied one at a time.
 //!
-//! After this file the reader knows the settings of table 3, what is asked of the runs at each, and how a sweep goes on where another was
-//! interrupted. The truth and the measurements of a run depend on the seed and the run alone: all settings and all filters see the same,
+//! After this file the reader knows the settings of table 3, what is asked of the runs at each, and how the answers are written as a
+//! table. The truth and the measurements of a run depend on the seed and the run alone: all settings and all filters see the same,
 //! so that a difference between filters is that of the runs, one by one. A run is called divergent when its percentage fit error exceeds
 //! [`DIVERGENT_FIT_ERROR`], and its measured bearings jump when two that follow each other differ by more than π.
 
 use super::contestants::Setup;
-use super::journal::{BadJournal, Header, Journal};
 use super::outcome::{Outcome, outcomes};
 use super::scenario::Scenario;
 use super::{DEGREE, DIVERGENT_FIT_ERROR, SWEPT_BEARING_DEGREES, SWEPT_NOISE_DENSITIES};
@@ -16,7 +15,7 @@ use crate::statistics::Estimate;
 use crate::statistics::estimate::mean;
 use crate::statistics::fit_error::FitForm;
 use serde::Serialize;
-use std::path::Path;
+use std::fmt::Write as _;
 
 /// A trajectory of the paper.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -251,40 +250,82 @@ impl Sweep {
         point(&self.scenario(setting), self.runs, self.seed, progress)
     }
 
-    /// What a journal of this sweep is told apart by.
-    pub fn header(&self) -> Header {
-        Header {
-            seed: self.seed,
-            runs: self.runs,
-            choices: self.choices.describe(),
-        }
-    }
-
-    /// All settings, those that the journal has not; each is in the journal as soon as it is finished.
-    ///
-    /// # Errors
-    ///
-    /// [`BadJournal`] when the file cannot be read or written, or is the journal of another sweep.
-    pub fn run(&self, journal: &Path, progress: Progress) -> Result<Vec<(Setting, Point)>, BadJournal> {
-        let settings = settings();
-        let (mut journal, mut points) = Journal::open(journal, &self.header(), &settings)?;
-        // What is already there has been run.
-        for _ in 0..points.len() * self.runs {
-            progress();
-        }
-        for setting in &settings[points.len()..] {
-            let point = self.point(setting, progress);
-            journal.append(setting, &point)?;
-            points.push(point);
-        }
-        Ok(settings.into_iter().zip(points).collect())
-    }
-
-    /// All settings, without a journal.
-    pub fn run_without_journal(&self, progress: Progress) -> Vec<(Setting, Point)> {
+    /// All settings, in their order.
+    pub fn run(&self, progress: Progress) -> Vec<(Setting, Point)> {
         let settings = settings().into_iter();
         settings
             .map(|setting| (setting, self.point(&setting, progress)))
             .collect()
     }
+
+    /// The points as comma-separated text: a line that names the format, the seed, the number of runs and the choices; the names of the
+    /// columns; a line a setting. Numbers are the shortest decimals that are read back to the same double.
+    ///
+    /// ```text
+    /// # immaculate-sweep/1; seed 1; runs 50; choices defaults
+    /// trajectory,parameter,value,runs_with_jump,cmkf_mean,…
+    /// straight,noise-density,0.01,12,1.8…,…
+    /// ```
+    pub fn csv(&self, points: &[(Setting, Point)]) -> String {
+        let Self { seed, runs, .. } = self;
+        let mut text = format!(
+            "# {FORMAT}; seed {seed}; runs {runs}; choices {}\n",
+            self.choices.describe()
+        );
+        text.push_str(&columns());
+        text.push('\n');
+        for (setting, point) in points {
+            text.push_str(&line(setting, point));
+            text.push('\n');
+        }
+        text
+    }
+}
+
+/// The name and the version of the format of [`Sweep::csv`].
+const FORMAT: &str = "immaculate-sweep/1";
+
+/// The names of the columns.
+pub fn columns() -> String {
+    let mut names = String::from("trajectory,parameter,value,runs_with_jump");
+    for filter in ["cmkf", "ukf", "plain_ukf"] {
+        for what in [
+            "mean",
+            "standard_error",
+            "median",
+            "divergent",
+            "divergent_with_jump",
+            "failed",
+        ] {
+            let _ = write!(names, ",{filter}_{what}");
+        }
+    }
+    for difference in ["ukf_minus_cmkf", "plain_ukf_minus_cmkf"] {
+        let _ = write!(names, ",{difference},{difference}_standard_error");
+    }
+    names
+}
+
+/// A setting and its point as a line.
+pub fn line(setting: &Setting, point: &Point) -> String {
+    let (trajectory, parameter) = (setting.trajectory.name(), setting.parameter.name());
+    let mut line = format!("{trajectory},{parameter},{:?},{}", setting.value, point.runs_with_jump);
+    for fit in &point.fits {
+        let Fit {
+            mean,
+            median,
+            divergent,
+            divergent_with_jump,
+            failed,
+        } = fit;
+        let _ = write!(
+            line,
+            ",{:?},{:?},{median:?},{divergent},{divergent_with_jump},{failed}",
+            mean.value, mean.standard_error
+        );
+    }
+    for difference in [point.unscented_less_converted, point.plain_less_converted] {
+        let _ = write!(line, ",{:?},{:?}", difference.value, difference.standard_error);
+    }
+    line
 }

@@ -112,7 +112,7 @@ fn sweep(effort: Effort, watch: &Watch) -> Result<Runs<Vec<(Setting, Point)>>, I
     let sweep = Sweep::new(&Choices::default(), runs, effort.seed)?;
     Ok(Runs {
         runs,
-        results: sweep.run_without_journal(watch.advance),
+        results: sweep.run(watch.advance),
     })
 }
 
