@@ -20,12 +20,13 @@ use common::{
 use immaculate::filter::{cubature, kalman, raw, update};
 use immaculate::gaussian::{Gaussian, log_density, mixture_covariance, mixture_mean};
 use immaculate::imm::probability::predicted_mode_probability;
-use immaculate::imm::{Equations, Step, diagonal_mixing};
+use immaculate::imm::{Equations, Step};
 use immaculate::matrix::{cholesky, is_positive_semidefinite, is_symmetric, ldl};
 use immaculate::model::Measurement;
 use immaculate::model::angle::wrap;
 use immaculate::model::motion::coordinated_turn;
 use immaculate::number::Rational;
+use immaculate::paper::zhu2016::diagonal_mixing;
 use immaculate::rule::Rule;
 use immaculate::rule::unscented::{Parameters, unscented};
 use nalgebra::{Matrix3, Matrix4, RowVector3, SVector, Vector2, Vector4, vector};

@@ -9,10 +9,9 @@
 
 use immaculate::matrix::is_finite;
 use immaculate::number::{
-    Convention, Counting, Dual, Enclosure, Field, Polynomial, RandomRounding, Rational, RationalFunction, Real, Roots,
-    Surd, Tally,
+    Dual, Enclosure, Field, Polynomial, RandomRounding, Rational, RationalFunction, Real, Roots, Surd,
 };
-use nalgebra::{Matrix2, Matrix3, RowVector3, SMatrix, Vector2, Vector3};
+use nalgebra::{Matrix2, Vector2};
 use num_traits::{One, Zero};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseError;
@@ -211,7 +210,6 @@ fn undecided_is_unequal_to_itself_and_absorbs_every_operation() {
         check_undecided_is_absorbing(&RationalFunction::integer(value));
         check_undecided_is_absorbing(&f64::integer(value));
         check_undecided_is_absorbing(&RandomRounding::integer(value));
-        check_undecided_is_absorbing(&Counting::input(value as f64, Convention::Dense));
         check_undecided_is_absorbing(&Dual::<Rational>::integer(value));
         Enclosure::with_precision(60, || check_undecided_is_absorbing(&Enclosure::integer(value)));
     }
@@ -232,7 +230,6 @@ fn only_a_number_is_decided() {
     }
     law::<f64>();
     law::<RandomRounding>();
-    law::<Counting>();
     law::<Dual<Rational>>();
     law::<Rational>();
     law::<Surd>();
@@ -605,38 +602,17 @@ fn the_order_of_surds_is_exact_where_doubles_cannot_tell() {
     assert!(sum.clone() * sum - tiny < square);
 }
 
-/// A dual number is decided where its value and its slope are; a number that counts has the value of the double, constants among them;
-/// and two tallies together have counted what both have.
+/// A dual number is decided where its value and its slope are.
 #[test]
 fn what_a_number_carries_takes_part() {
     let (one, undecided) = (Rational::one(), Rational::undecided());
     assert!(Dual::new(one.clone(), one.clone()).is_decided());
     assert!(!Dual::new(one.clone(), undecided.clone()).is_decided() && !Dual::new(undecided, one).is_decided());
-    let (two, input) = (Counting::integer(2), Counting::input(2.0, Convention::Structural));
-    assert_eq!(
-        [-two, two - Counting::integer(5), -input].map(Counting::value),
-        [-2.0, -3.0, -2.0]
-    );
-    let (_, once) = Counting::count(|| (Counting::zero() + input * input + input / input).sqrt().exp());
-    let thrice = once.and(&once).and(&once);
-    let counts = |tally: Tally| {
-        [
-            tally.additions,
-            tally.first_additions,
-            tally.multiplications,
-            tally.divisions,
-            tally.roots,
-            tally.functions,
-        ]
-    };
-    assert_eq!((counts(once), counts(thrice)), ([1; 6], [3; 6]));
 }
 
-/// A number that counts is written as the double that it is, and a dual number with its slope beside ε, in the width that is asked for.
+/// A dual number is written with its slope beside ε, in the width that is asked for.
 #[test]
 fn numbers_that_carry_something_say_what() {
-    let counted = Counting::input(2.5, Convention::Dense);
-    assert_eq!(format!("{counted:6.2} {counted:?}"), "  2.50 2.5");
     let dual = Dual::new(Rational::new(1, 2), Rational::new(3, 1));
     assert_eq!(format!("{dual:>14} {dual:?}"), "    1/2 + (3)ε 1/2 + (3)ε");
 }
@@ -1008,224 +984,4 @@ fn an_infinitesimal_is_positive_and_below_every_positive_number() {
     assert!(dual(0, 1000) < Dual::rational(&power_of_two(-1000)));
     assert!(dual(2, -7) < dual(2, 7) && dual(2, 7) < dual(3, -7));
     assert_eq!(dual(2, 1).partial_cmp(&Dual::undecided()), None);
-}
-
-// Counting numbers
-
-/// A matrix of inputs, none of which is 0 or 1.
-fn counted<const R: usize, const C: usize>(convention: Convention) -> SMatrix<Counting, R, C> {
-    SMatrix::from_fn(|i, j| Counting::input((2 + i + 7 * j) as f64, convention))
-}
-
-#[test]
-fn a_matrix_product_costs_what_it_costs_on_paper() {
-    fn law<const N: usize, const M: usize, const P: usize>() {
-        let (left, right) = (counted::<N, M>(Convention::Dense), counted::<M, P>(Convention::Dense));
-        let (product, tally) = Counting::count(|| left * right);
-        assert_eq!(tally.multiplications, N * M * P);
-        assert_eq!(tally.additions, N * (M - 1) * P);
-        assert_eq!(tally.first_additions, N * P);
-        assert_eq!(tally.total(Convention::Matlab), 2 * N * M * P);
-        assert_eq!(tally.total(Convention::Dense), N * (2 * M - 1) * P);
-        // And it is the product.
-        let plain = left.map(Counting::value) * right.map(Counting::value);
-        assert_eq!(product.map(Counting::value), plain);
-    }
-    law::<3, 3, 3>();
-    law::<3, 3, 1>();
-    law::<1, 3, 3>();
-    law::<3, 1, 3>();
-    law::<2, 5, 4>();
-    law::<1, 1, 1>();
-    // A product of three, and a sum: 54 + 54 + 9.
-    let a = counted::<3, 3>(Convention::Matlab);
-    let (_, tally) = Counting::count(|| a * a * a.transpose() + a);
-    assert_eq!(tally.total(Convention::Matlab), 117);
-}
-
-#[test]
-fn zeros_and_ones_are_free_only_where_they_are_known() {
-    let identity = |convention| Matrix3::<f64>::identity().map(|entry| Counting::input(entry, convention));
-    let cost = |convention| {
-        let (a, one) = (counted::<3, 3>(convention), identity(convention));
-        Counting::count(|| one * a).1.total(convention)
-    };
-    assert_eq!(Convention::ALL.map(cost), [54, 45, 0]);
-    // F x of constant acceleration with its two ones on the diagonal, two t and a t²/2: 3 products and 3 sums.
-    let f = Matrix3::new(1.0, 2.0, 2.5, 0.0, 1.0, 2.0, 0.0, 0.0, 1.0);
-    let cost = |convention| {
-        let (f, x) = (
-            f.map(|entry| Counting::input(entry, convention)),
-            counted::<3, 1>(convention),
-        );
-        Counting::count(|| f * x).1.total(convention)
-    };
-    assert_eq!(Convention::ALL.map(cost), [18, 15, 6]);
-    // H P Hᵀ with H = [1 0 0] only reads an entry.
-    let h = RowVector3::new(1.0, 0.0, 0.0).map(|entry| Counting::input(entry, Convention::Structural));
-    let p = counted::<3, 3>(Convention::Structural);
-    let (value, tally) = Counting::count(|| h * p * h.transpose());
-    assert_eq!((value[(0, 0)], tally.total(Convention::Structural)), (p[(0, 0)], 0));
-}
-
-#[test]
-fn operations_on_given_numbers_count_one_each() {
-    let (x, y) = (
-        Counting::input(3.0, Convention::Matlab),
-        Counting::input(2.0, Convention::Matlab),
-    );
-    let (_, tally) = Counting::count(|| {
-        let sum = x + y - x * y / y;
-        (sum.sqrt().exp().ln(), (-x).sin().atan2(&y.cos()), x < y)
-    });
-    assert_eq!((tally.additions, tally.multiplications, tally.divisions), (2, 1, 1));
-    assert_eq!((tally.roots, tally.functions, tally.first_additions), (1, 5, 0));
-    assert_eq!(tally.total(Convention::Matlab), 10);
-    // What depends on nothing given is computed once: 2π is free, 2π x is a product.
-    let (_, tally) =
-        Counting::count(|| Counting::pi() * Counting::integer(2) * x + Counting::zero() - Counting::zero());
-    assert_eq!(tally.total(Convention::Dense), 1);
-    // A sum that starts from nothing, as its loop is written.
-    let (sum, tally) = Counting::count(|| [x, y, x].into_iter().fold(Counting::zero(), |sum, value| sum + value));
-    assert_eq!((sum.value(), tally.additions, tally.first_additions), (8.0, 2, 1));
-}
-
-#[test]
-fn an_outer_count_includes_the_inner_one() {
-    let v = counted::<3, 1>(Convention::Matlab);
-    let (inner, outer) = Counting::count(|| {
-        let sum: Vector3<Counting> = v + v;
-        let (_, inner) = Counting::count(|| sum + v);
-        inner
-    });
-    assert_eq!((inner.additions, outer.additions), (3, 6));
-    assert_eq!(Counting::count(|| ()).1.total(Convention::Matlab), 0);
-}
-
-/// A number of each origin: the type's zero and one, a constant, data, and data times the type's one, as a product of matrices makes it.
-fn of_each_origin() -> [Counting; 5] {
-    let input = |value| Counting::input(value, Convention::Dense);
-    let (zero, one) = (Counting::zero(), Counting::one());
-    [zero, one, Counting::integer(2), input(3.0), one * input(5.0)]
-}
-
-/// Which of them a number is, from what it costs to go on with it.
-fn origin(number: Counting) -> char {
-    let data = Counting::input(7.0, Convention::Dense);
-    let tally = |work: &dyn Fn() -> Counting| Counting::count(work).1;
-    if tally(&|| number + data).first_additions == 1 {
-        return 'Z';
-    }
-    let product = tally(&|| number * data);
-    match tally(&|| number + Counting::integer(2)).additions {
-        0 if product.multiplications == 0 => 'O',
-        0 => 'C',
-        _ if product.first_additions == 1 => 'S',
-        _ => 'D',
-    }
-}
-
-/// Each operation on numbers of each origin, in a table: the origin of the result, and what it costs: nothing (.), one operation (1), a
-/// first addition (f), an addition that takes back a first one (t), a product that is thought to be a first one (p).
-#[test]
-fn where_numbers_come_from_decides_what_an_operation_costs() {
-    type Operation = fn(Counting, Counting) -> Counting;
-    type OfDoubles = fn(f64, f64) -> f64;
-    //                                                   Z  O  C  D  S
-    let tables: [(Operation, OfDoubles, [&str; 5]); 4] = [
-        (
-            |x, y| x + y,
-            |x, y| x + y,
-            [
-                "Z. O. C. Df D.",
-                "O. C. C. D1 D1",
-                "C. C. C. D1 D1",
-                "Df D1 D1 D1 Dt",
-                "D. D1 D1 Dt D1",
-            ],
-        ),
-        (
-            |x, y| x - y,
-            |x, y| x - y,
-            [
-                "Z. C. C. D. D.",
-                "O. C. C. D1 D1",
-                "C. C. C. D1 D1",
-                "D. D1 D1 D1 D1",
-                "D. D1 D1 D1 D1",
-            ],
-        ),
-        (
-            |x, y| x * y,
-            |x, y| x * y,
-            [
-                "Z. Z. Z. Z. Z.",
-                "Z. O. C. S. S.",
-                "Z. C. C. D1 D1",
-                "Z. D. D1 D1 D1",
-                "Z. D. Dp Dp Dp",
-            ],
-        ),
-        (
-            |x, y| x / y,
-            |x, y| x / y,
-            [
-                "C. Z. C. Z. Z.",
-                "C. O. C. D1 D1",
-                "C. C. C. D1 D1",
-                "D1 D. D1 D1 D1",
-                "D1 D. D1 D1 D1",
-            ],
-        ),
-    ];
-    let numbers = of_each_origin();
-    assert_eq!(numbers.map(origin), ['Z', 'O', 'C', 'D', 'S']);
-    for (operation, of_doubles, table) in tables {
-        for (x, row) in numbers.iter().zip(table) {
-            for (y, expected) in numbers.iter().zip(row.split(' ')) {
-                // A first addition before, so that one can be taken back.
-                let (result, tally) = Counting::count(|| {
-                    let _ = Counting::zero() + numbers[3];
-                    operation(*x, *y)
-                });
-                let others = tally.multiplications + tally.divisions;
-                let cost = match (tally.additions, others, tally.first_additions) {
-                    (0, 0, 1) => '.',
-                    (1, 0, 1) | (0, 1, 1) => '1',
-                    (0, 0, 2) => 'f',
-                    (1, 0, 0) => 't',
-                    (0, 1, 2) => 'p',
-                    _ => '?',
-                };
-                assert_eq!(
-                    format!("{}{cost}", origin(result)),
-                    expected,
-                    "{x} and {y} give {result}"
-                );
-                let value = of_doubles(x.value(), y.value());
-                assert!(
-                    value.is_nan() && result.value().is_nan() || value == result.value(),
-                    "{x} and {y}: {result}"
-                );
-            }
-        }
-    }
-    assert_eq!(numbers.map(|x| origin(-x)), ['Z', 'C', 'C', 'D', 'D']);
-    assert_eq!(numbers.map(|x| (-x).value()), numbers.map(|x| -x.value()));
-    // A function of what is not given is computed once; a root is counted apart.
-    let cost = |work: &dyn Fn() -> Counting| {
-        let (result, tally) = Counting::count(work);
-        (origin(result), tally.functions, tally.roots)
-    };
-    for x in numbers {
-        let is_given = matches!(origin(x), 'D' | 'S');
-        let (kind, once) = if is_given { ('D', 1) } else { ('C', 0) };
-        for function in [Real::exp, Real::ln, Real::sin, Real::cos, |x: &Counting| {
-            x.atan2(&Counting::one())
-        }] {
-            assert_eq!(cost(&|| function(&x)), (kind, once, 0));
-        }
-        assert_eq!(cost(&|| Counting::one().atan2(&x)), (kind, once, 0));
-        assert_eq!(cost(&|| x.sqrt()), (kind, 0, once));
-    }
 }

@@ -11,7 +11,6 @@ use immaculate::filter::kalman::{cross_covariance, innovation_covariance, predic
 use immaculate::filter::raw::{raw_covariance, raw_cross_covariance, raw_second_moment};
 use immaculate::filter::update::{gain, updated_covariance, updated_mean};
 use immaculate::gaussian::{Gaussian, mixture_covariance, mixture_mean};
-use immaculate::imm::diagonal_mixing;
 use immaculate::imm::probability::{mixing_probability, predicted_mode_probability};
 use immaculate::matrix::{ldl, quadratic_form, solve};
 use immaculate::model::motion::{
@@ -22,6 +21,7 @@ use immaculate::model::wiener::{
     velocity_noise_in_the_plane,
 };
 use immaculate::number::{Field, Rational, RationalFunction, Roots, Surd};
+use immaculate::paper::zhu2016::diagonal_mixing;
 use immaculate::rule::simplex::{self, below_diagonal_squared, on_diagonal_squared, radial_rule, simplex};
 use immaculate::rule::sphere::{
     SphericalRule, every_dimension, gegenbauer, harmonic_sum, on_axes, on_axes_and_diagonals, on_simplex, radial_moment,

@@ -748,7 +748,7 @@ fn is_equation_room(path: &str) -> bool {
         "src/model/",
         "src/filter/",
         "src/imm/probability.rs",
-        "src/imm/diagonal_mixing.rs",
+        "src/paper/zhu2016/diagonal_mixing.rs",
         "src/statistics/",
     ];
     ROOMS.iter().any(|room| path.starts_with(room))

@@ -22,14 +22,12 @@
 //! - [`cycle`]: the one wiring that runs a table;
 //! - [`fixed_gain`]: the table of filters whose gains are inputs;
 //! - [`unequal`]: what is mixed where one mode has an entry of the state that another lacks;
-//! - [`diagonal_mixing`]: a labelled stand-in for the OMTM-IMM that zhu2016 compares itself with;
 //! - [`plain_bearing`]: bearings that are never wrapped;
 //! - [`printed`]: what the papers print wrongly.
 //!
 //! Example: a whole step with two modes, value by value, is on the [front page](crate); [`Imm`] has one with one mode.
 
 pub mod cycle;
-pub mod diagonal_mixing;
 pub mod equations;
 pub mod fixed_gain;
 pub mod plain_bearing;

@@ -14,12 +14,11 @@
 //! | [`RationalFunction`]                  | [`Roots`]                 | identities for all inputs, and for every n      |
 //! | [`Enclosure`]                         | [`Real`]                  | certified digits, and inequalities as theorems  |
 //! | [`RandomRounding`]                    | [`Real`]                  | how much of a difference is only arithmetic     |
-//! | [`Counting`]                          | [`Real`]                  | how many operations an equation costs           |
 //! | [`Dual`] over another                 | that of the other         | derivatives, proven or certified                |
 //!
 //! Reading order: the three traits here; [`Rational`], [`Surd`], [`RationalFunction`] (with [`Polynomial`]), which are exact;
-//! [`Enclosure`], which knows how far it is off, and the doubles, which do not; [`Dual`], [`RandomRounding`] and [`Counting`], which say
-//! something about an evaluation besides its value.
+//! [`Enclosure`], which knows how far it is off, and the doubles, which do not; [`Dual`] and [`RandomRounding`], which say something
+//! about an evaluation besides its value.
 //!
 //! Three traits say what an equation needs, and an equation has the weakest bound it can live with:
 //! [`Field`] (+ − × ÷), [`Roots`] (the square roots of rationals, all that cubature points need) and [`Real`]
@@ -47,7 +46,6 @@
 //! assert_eq!(*gain(Dual::variable(1.0), Dual::constant(3.0)).slope(), 3.0 / 16.0);
 //! ```
 
-mod counting;
 mod decimal;
 mod dual;
 mod enclosure;
@@ -60,7 +58,6 @@ mod rational;
 mod rational_function;
 mod surd;
 
-pub use counting::{Convention, Counting, Tally};
 pub use dual::Dual;
 pub use enclosure::Enclosure;
 pub use polynomial::Polynomial;

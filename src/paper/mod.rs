@@ -30,6 +30,7 @@ pub mod derbez2000;
 pub mod experiment;
 pub mod liu2017;
 pub mod monte_carlo;
+pub mod operations;
 pub mod result;
 pub mod scenario;
 pub mod simulation;

@@ -11,7 +11,6 @@
 //! - [`long_term`], [`simulated`]: the long-term error of the IMM filter, predicted and simulated;
 //! - [`perturbation`]: moment matching as a perturbation of fixed gains;
 //! - [`unrolled`]: the recursion undone;
-//! - [`operations`]: what the filters cost;
 //! - [`pair`]: the two filters of derbez2000 and three criteria of their joint stability;
 //! - [`certificate`]: what proves joint stability, or its absence;
 //! - [`search`]: how such proofs are found;
@@ -24,7 +23,6 @@ pub mod linear;
 pub mod long_term;
 pub mod map;
 pub mod mismatch;
-pub mod operations;
 pub mod pair;
 pub mod perturbation;
 pub mod polynomial;

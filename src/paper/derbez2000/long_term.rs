@@ -1,45 +1,38 @@
 //! The claims of derbez2000 on the long-term error and on the cost.
 //!
 //! After this file the reader knows what the paper's algorithm predicts beside what a simulation shows, under each form of its steps,
-//! and how many operations the filters' own equations take.
+//! and how many operations the filters' equations take.
 
 use super::{ACCELERATION, INTERVAL};
 use crate::model::acceleration::{acceleration_response, embedded_constant_velocity, position_matrix};
-use crate::number::{Convention, RationalFunction};
+use crate::number::RationalFunction;
 use crate::paper::Effort;
 use crate::paper::monte_carlo::Generator;
+use crate::paper::operations::{CovarianceUpdate, OneCoordinate, Sums};
 use crate::paper::specification::Specification;
 use crate::paper::verdict::{Judgement, Verdict, proven_by, refuted_by};
 use crate::statistics::estimate::figure;
 use crate::steady::gains;
 use crate::steady::long_term::Form as Steps;
 use crate::steady::mismatch::{Mismatch, alpha_beta_lag, alpha_beta_scatter};
-use crate::steady::operations::{Filter, Form, cycle};
 use crate::steady::simulated::{Grid, POINTS, Start};
 use std::fmt::Write;
 
 /// Half the load of the CA Kalman filter.
 pub fn half_the_load(s: &Specification) -> Judgement {
-    let total = |filter, form, convention| 2 * cycle(filter, form, convention).total(convention);
-    let mut evidence = String::from(
-        "Operations of one cycle, both coordinates, counted by running the equations on numbers that count:",
-    );
+    let mut evidence =
+        String::from("Operations of one cycle, both coordinates, by the formula of the equations, every matrix full:");
     let mut ratios = Vec::new();
-    for (convention, words) in Convention::ALL.into_iter().zip([
-        "full matrices, every sum from nothing (MATLAB 5)",
-        "full matrices, sums from their first term",
-        "known zeros and ones free",
-    ]) {
-        let of = |filter| Form::ALL.map(|form| total(filter, form, convention));
-        let [fixed, single, imm] = [Filter::FixedGain, Filter::ConstantAcceleration, Filter::Imm].map(of);
+    for (sums, words) in Sums::ALL
+        .into_iter()
+        .zip(["every sum from nothing (MATLAB 5)", "sums from their first term"])
+    {
+        let of = |filter: OneCoordinate| CovarianceUpdate::ALL.map(|update| filter.operations(update, sums));
+        let [fixed, single, imm] = OneCoordinate::ALL.map(of);
         let _ = write!(
             evidence,
             " {words}: fixed gain {}, CA {} to {}, IMM {} to {};",
-            fixed[0],
-            single.iter().min().unwrap_or(&0),
-            single.iter().max().unwrap_or(&0),
-            imm.iter().min().unwrap_or(&0),
-            imm.iter().max().unwrap_or(&0),
+            fixed[0], single[0], single[1], imm[0], imm[1],
         );
         ratios.extend(single.map(|single| fixed[0] as f64 / single as f64));
     }
@@ -50,8 +43,8 @@ pub fn half_the_load(s: &Specification) -> Judgement {
     let _ = write!(
         evidence,
         " printed: 242, 590, and 1332, 1322 or 1326. 242 and the three of the IMM filter lie between the cheapest and the dearest of these; 590 is more than \
-         any, so that something was computed twice. Fixed gain over CA is {} to {}, printed {}: half where matrices are full and the update is the \
-         printed one, hardly less than the Kalman filter where its zeros and ones are known.",
+         any, so that something was computed twice. Fixed gain over CA is {} to {}, printed {}: half where the update is the printed one, more with \
+         P⁻ − K S Kᵀ.",
         figure(least),
         figure(greatest),
         figure(242.0 / 590.0),

@@ -20,7 +20,7 @@
 //! - 3 fixed gains: [`gains`](crate::steady::gains), [`riccati`](crate::steady::riccati), [`fixed_gain`](crate::filter::fixed_gain)
 //! - 3.1 moment matching: [`perturbation`](crate::steady::perturbation)
 //! - 3.2 coordinates: [`radar`], [`scenario::Coordinates`]
-//! - 4 simulations, tables 1 and 2: [`path`], [`contestants`], [`scenario`](mod@scenario), [`operations`](crate::steady::operations),
+//! - 4 simulations, tables 1 and 2: [`path`], [`contestants`], [`scenario`](mod@scenario), [`operations`](super::operations),
 //!   [`search`]
 //! - 5 stability of the whole: [`verdict`](crate::steady::verdict), [`map`](crate::steady::map)
 //! - the claims: [`claims::judge`]

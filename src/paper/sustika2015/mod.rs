@@ -22,7 +22,7 @@
 //! - 4 measure, (37)-(39): [`percentage_fit_error`](crate::statistics::fit_error::percentage_fit_error),
 //!   [`position_fit_error`](crate::statistics::fit_error::position_fit_error)
 //! - 5.1, 5.2 tables 4 and 5, figures: [`outcome`], [`sweep`], [`divergence`]
-//! - 5.3 cost, table 6: [`operations`], [`reasoning`]
+//! - 5.3 cost, table 6: [`operations`](super::operations), [`reasoning`]
 //! - the claims: [`claims::judge`]
 //!
 //! The files of this folder:
@@ -31,7 +31,6 @@
 //! - [`contestants`]: the two filters that are compared, and the unscented one with bearings that are never wrapped;
 //! - [`scenario`](mod@scenario): a simulation with every choice made, and a run of it;
 //! - [`sweep`]: scenario 3, the filters' noise parameters varied one at a time;
-//! - [`operations`]: what a cycle of either filter costs;
 //! - [`reasoning`]: the claims that need no simulation;
 //! - [`divergence`]: whether the unscented filter diverges because of the noises or because of the cut of the bearings;
 //! - [`outcome`]: what a run shows of both filters, and of the second with bearings that are never wrapped;
@@ -40,7 +39,6 @@
 pub mod claims;
 pub mod contestants;
 pub mod divergence;
-pub mod operations;
 pub mod outcome;
 pub mod reasoning;
 pub mod scenario;

@@ -3,11 +3,11 @@
 //! After this file the reader knows what the paper's arguments for its two filters are worth: how hard a Jacobian is, why range and
 //! bearing are not linear, what sigma points keep, where IMM-CMKF linearises after all, and what a cycle of either filter costs.
 
-use super::operations::{Filter, cycle};
 use crate::filter::cubature;
 use crate::model::conversion::{Conversion, converted_covariance, converted_position, in_the_plane};
 use crate::model::{Measurement, PolarComponent};
-use crate::number::{Convention, Counting, Dual, Enclosure, Field, Rational, RationalFunction, Real, Tally};
+use crate::number::{Dual, Enclosure, Field, Rational, RationalFunction, Real};
+use crate::paper::operations::{CoastalRadar, Sums};
 use crate::paper::specification::{Specification, sustika2015 as specification};
 use crate::paper::verdict::{Judgement, proven_by, proven_if, refuted_by};
 use crate::rule::moment::wrong_moment_of_degree;
@@ -94,21 +94,15 @@ pub fn difficult_jacobian() -> Judgement {
     let first = POSITIONS[0];
     let matrix = jacobian(&at(&first[0], &first[1]));
     let entries = matrix.iter().filter(|entry| **entry != 0.0).count();
-    let (_, tally) = Counting::count(|| {
-        let [x, y] = first.map(|value| Counting::input(value, Convention::Structural));
-        closed_jacobian(&x, &y)
-    });
     let at_the_radar = jacobian(&at(&0.0, &0.0));
     let has_none = at_the_radar.iter().any(|entry| !entry.is_decided());
     let evidence = format!(
         "The Jacobian of (3) is 2 × 6 with {entries} entries other than zero, [x, y]/r and [−y, x]/r². Dual numbers through the code of \
          (3) give it without a calculation; enclosures of {BITS} bits of its difference to the closed form hold zero and are narrower \
-         than 10⁻⁴⁰ at {agreeing} of {} positions, on both sides of the cut of the bearing too. The closed form costs {} operations, {} \
+         than 10⁻⁴⁰ at {agreeing} of {} positions, on both sides of the cut of the bearing too. The closed form costs 8 operations, 1 \
          of them a root. {} Always difficult it is not; whether people err in it is no question of mathematics, and the paper runs no \
          extended Kalman filter.",
         POSITIONS.len(),
-        tally.total(Convention::Structural),
-        tally.roots,
         if has_none {
             "At the radar itself there is none."
         } else {
@@ -269,26 +263,24 @@ pub fn execution_time() -> Judgement {
          prediction too:",
     );
     let mut is_simpler = true;
-    for convention in Convention::ALL {
-        let tallies =
-            [Filter::Converted, Filter::Unscented, Filter::UnscentedTwice].map(|filter| cycle(filter, convention));
-        let totals = tallies.map(|tally| tally.total(convention));
-        is_simpler &= totals[0] > 0 && totals[0] < totals[1];
+    for (sums, words) in Sums::ALL
+        .into_iter()
+        .zip(["every matrix full and every sum from nothing", "every matrix full"])
+    {
+        let totals = CoastalRadar::ALL.map(|filter| filter.operations(sums));
+        is_simpler &= totals[0] < totals[1];
         let _ = write!(
             evidence,
-            " {}: {totals:?}, ratios {} and {};",
-            in_words(convention),
-            ratio_of(totals[1], totals[0]),
-            ratio_of(totals[2], totals[0]),
+            " {words}: {totals:?}, ratios {} and {};",
+            figure(totals[1] as f64 / totals[0] as f64),
+            figure(totals[2] as f64 / totals[0] as f64),
         );
-        if convention == Convention::Structural {
-            let _ = write!(
-                evidence,
-                " among them {};",
-                tallies.map(|tally| functions(&tally)).join(" and ")
-            );
-        }
     }
+    let functions = CoastalRadar::ALL.map(|filter| {
+        let [roots, functions] = filter.roots_and_functions();
+        format!("{roots} roots with {functions} of exp, ln, sin, cos, atan2")
+    });
+    let _ = write!(evidence, " among them {};", functions.join(" and "));
     let _ = write!(
         evidence,
         " By operations IMM-CMKF is the simpler one under {} convention. The paper's times are of two programs that it does not print.",
@@ -299,26 +291,6 @@ pub fn execution_time() -> Judgement {
         proven_if(is_printed && is_simpler),
         evidence,
     )
-}
-
-fn ratio_of(above: usize, below: usize) -> String {
-    let double = |count| u32::try_from(count).map_or(f64::NAN, f64::from);
-    figure(double(above) / double(below))
-}
-
-fn functions(tally: &Tally) -> String {
-    format!(
-        "{} roots with {} of exp, ln, sin, cos, atan2",
-        tally.roots, tally.functions
-    )
-}
-
-fn in_words(convention: Convention) -> &'static str {
-    match convention {
-        Convention::Matlab => "every matrix full and every sum from nothing",
-        Convention::Dense => "every matrix full",
-        Convention::Structural => "zeros and ones known",
-    }
 }
 
 /// J R Jᵀ with the Jacobian J of (20), (21), for every range and bearing: from the conversion itself on dual numbers, whose cosine c and

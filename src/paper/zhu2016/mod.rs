@@ -29,6 +29,7 @@
 //!   [`acceleration_noise`], [`TRANSITION`], [`scenario`]
 //! - 4 figures, table 1, (64): [`root_mean_square`](crate::statistics::rmse::root_mean_square),
 //!   [`Reproduction`](super::result::Reproduction)
+//! - the fifth column of table 1: [`diagonal_mixing`], a labelled stand-in for OMTM-IMM, of which no equations are printed
 //! - the claims: [`claims::judge`], those that need no runs in [`arithmetic`]
 //!
 //! Motion and measurement are linear here. Any rule that is exact to degree two then *is* the Kalman filter, so that three of the five
@@ -36,11 +37,12 @@
 
 pub mod arithmetic;
 pub mod claims;
+pub mod diagonal_mixing;
 
 use super::comparison::{Average, Quantity};
 use super::scenario::{Contestant, Motion, Scenario};
 use super::specification::{Choices, InvalidChoice, zhu2016 as specification};
-use crate::imm::{Equations, Problem, diagonal_mixing};
+use crate::imm::{Equations, Problem};
 use crate::model::motion::{Mode, acceleration_input, acceleration_noise};
 use crate::model::{Measurement, PolarComponent};
 use crate::number::Rational;

@@ -2,14 +2,13 @@
 //!
 //! After this file the reader knows which of the conclusions the paper's own tables bear, and which the runs do.
 
-use super::super::operations::{Filter, cycle};
 use super::super::{GOOD_FIT_ERROR, RUNS};
 use super::evidence::{
     CONVERTED, Evidence, PATHS, PLAIN, WINDOWS, WRAPPED, clauses, less_limit, opposite, published, words,
 };
 use super::manoeuvring::gaps;
 use super::straight::wrapped_and_not;
-use crate::number::Convention;
+use crate::paper::operations::{CoastalRadar, Sums};
 use crate::paper::specification::Specification;
 use crate::paper::verdict::{
     Judgement, all_below_zero, all_of, below_zero_whichever, confirmed_if, in_words, proven_if, sign_of, whichever,
@@ -131,7 +130,7 @@ pub fn suitable(s: &Specification, runs: &Evidence) -> Judgement {
         .map(|simulation| format!("{} {}", name(simulation), words(of(simulation).fit(CONVERTED), " %")))
         .collect();
     let operations =
-        [Filter::Converted, Filter::Unscented].map(|filter| cycle(filter, Convention::Dense).total(Convention::Dense));
+        [CoastalRadar::Converted, CoastalRadar::Unscented].map(|filter| filter.operations(Sums::FromFirstTerm));
     let listed = |list: &[String]| {
         if list.is_empty() {
             "nowhere".to_owned()

@@ -7,8 +7,8 @@
 //!
 //! No claim about OMTM-IMM itself follows from it.
 
-use super::Equations;
 use crate::gaussian::Gaussian;
+use crate::imm::Equations;
 use crate::number::{Field, Real};
 use nalgebra::{SMatrix, SVector};
 
@@ -24,7 +24,7 @@ use nalgebra::{SMatrix, SVector};
 /// Example: the first estimate knows the position three times as well, and the velocity a third as well.
 ///
 /// ```
-/// use immaculate::{gaussian::Gaussian, imm::diagonal_mixing::diagonal_weight, number::{Field, Rational}};
+/// use immaculate::{gaussian::Gaussian, paper::zhu2016::diagonal_mixing::diagonal_weight, number::{Field, Rational}};
 /// use nalgebra::{Matrix2, Vector2, vector};
 ///
 /// let of = |a, b| Gaussian { mean: Vector2::zeros(), covariance: Matrix2::from_diagonal(&vector![a, b].map(Rational::integer)) };
@@ -51,7 +51,7 @@ pub fn diagonal_weight<T: Field, const N: usize>(estimates: &[Gaussian<T, N>], i
 /// Example: estimates at 0 and 4 of which the first has a third of the variance.
 ///
 /// ```
-/// use immaculate::{gaussian::Gaussian, imm::diagonal_mixing::mixed_mean, number::{Field, Rational}};
+/// use immaculate::{gaussian::Gaussian, paper::zhu2016::diagonal_mixing::mixed_mean, number::{Field, Rational}};
 /// use nalgebra::{matrix, vector};
 ///
 /// let at = |x, variance| Gaussian { mean: vector![Rational::integer(x)], covariance: matrix![Rational::integer(variance)] };
@@ -74,7 +74,7 @@ pub fn mixed_mean<T: Field, const N: usize>(estimates: &[Gaussian<T, N>]) -> SVe
 /// Example: estimates at 0 and 4 of variance 1 have the weights ½ and the mean 2.
 ///
 /// ```
-/// use immaculate::{gaussian::Gaussian, imm::diagonal_mixing::mixed_covariance};
+/// use immaculate::{gaussian::Gaussian, paper::zhu2016::diagonal_mixing::mixed_covariance};
 /// use nalgebra::{matrix, vector};
 ///
 /// let at = |x| Gaussian { mean: vector![x], covariance: matrix![1.0] };
