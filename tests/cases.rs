@@ -5,16 +5,21 @@
 
 #![allow(clippy::float_cmp, reason = "zeros and ones of a file are exact")]
 
+mod published;
+
 use immaculate::imm::Quantity;
 use immaculate::number::Real;
-use immaculate::oracle::case::{self, Expected};
+use immaculate::oracle::case::{self, Case, Expected};
+use immaculate::oracle::flags::FLAGS;
 use immaculate::oracle::problem::{FilterFile, MeasurementFile, ProblemFile, Rows};
-use immaculate::oracle::published::{FLAGS, all, rejected};
 use immaculate::oracle::run::Computed;
 use immaculate::oracle::shape::{self, Work};
 use immaculate::oracle::trace::Dimensions;
-use serde_json::Value;
+use published::write::write;
+use published::{all, rejected};
+use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
 
 /// Digits that every common reader of JSON reads rightly.
 const DIGITS: usize = 15;
@@ -366,6 +371,104 @@ fn every_rule_gives_the_kalman_filter_where_all_is_linear() {
     }
 }
 
+// Writing cases
+
+/// For maintainers, when a draft is new:
+///
+/// ```console
+/// $ cargo test --test cases -- --ignored write_the_cases_that_are_new
+/// ```
+#[test]
+#[ignore = "writes files into fixtures/cases"]
+fn write_the_cases_that_are_new() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/cases");
+    println!("{} cases written", write(&folder).unwrap());
+}
+
+/// A published case is never changed: neither its problem, nor its name after it was withdrawn.
+#[test]
+fn a_published_case_is_not_written_again() {
+    let lock = json!(case::lock().unwrap());
+    let place = lock["cases"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .position(|case| case["id"] == "update.kalman")
+        .unwrap();
+    let mut changed = lock.clone();
+    let digest = case::digest("another problem");
+    changed["cases"][place]["problem"] = json!(digest);
+    let mut withdrawn = lock.clone();
+    withdrawn["cases"][place]["withdrawn"] = json!("its purpose was another case's");
+    // One is new besides: it is not written either.
+    for lock in [&mut changed, &mut withdrawn] {
+        lock["cases"]
+            .as_array_mut()
+            .unwrap()
+            .retain(|case| case["id"] != "update.cubature-3");
+        let folder = with_lock("not written again", &lock.to_string());
+        let complaint = write(&folder).unwrap_err();
+        assert!(
+            complaint.contains("`update.kalman` is published and was changed or withdrawn"),
+            "{complaint}"
+        );
+        assert_eq!(names(&folder), ["lock.json"]);
+        assert_eq!(
+            std::fs::read_to_string(folder.join("lock.json")).unwrap(),
+            lock.to_string()
+        );
+    }
+}
+
+#[test]
+fn a_lock_that_cannot_be_read_is_named_and_nothing_is_written() {
+    for (lock, words) in [
+        ("", "EOF"),
+        ("{\"format\":\"immaculate-lock/1\"}", "missing field `cases`"),
+        ("{\"format\":\"immaculate-lock/2\",\"cases\":[]}", "immaculate-lock/2"),
+        (
+            "{\"format\":\"immaculate-lock/1\",\"cases\":[],\"colour\":1}",
+            "unknown field `colour`",
+        ),
+    ] {
+        let folder = with_lock("bad lock", lock);
+        let complaint = write(&folder).unwrap_err();
+        assert!(
+            complaint.contains("lock.json: ") && complaint.contains(words),
+            "{complaint}"
+        );
+        assert_eq!(names(&folder), ["lock.json"]);
+    }
+    let nowhere = temporary("no folder");
+    let complaint = write(&nowhere).unwrap_err();
+    assert!(complaint.contains("lock.json: ") && !nowhere.exists(), "{complaint}");
+}
+
+/// Exact: new cases are written as the published ones were, and the lock has them last.
+#[test]
+fn new_cases_are_written_and_locked() {
+    let mut lock = case::lock().unwrap();
+    let new = ["update.kalman", "rejected.shape.matrix"];
+    lock.cases.retain(|case| !new.contains(&case.id.as_str()));
+    let before = lock.cases.len();
+    let folder = with_lock("new", &json!(lock).to_string());
+    assert_eq!(write(&folder), Ok(2));
+    assert_eq!(names(&folder).len(), 5);
+    for id in new {
+        let read = |name: String| std::fs::read_to_string(folder.join(name)).unwrap();
+        assert_eq!(read(case::problem_name(id)), locked(id).problem_text);
+        assert_eq!(read(case::trace_name(id)), locked(id).trace_text);
+    }
+    let written: case::Lock =
+        serde_json::from_str(&std::fs::read_to_string(folder.join("lock.json")).unwrap()).unwrap();
+    assert_eq!(written.cases[..before], lock.cases);
+    assert_eq!([&written.cases[before].id, &written.cases[before + 1].id], new);
+    // Once more: nothing is new.
+    let text = std::fs::read_to_string(folder.join("lock.json")).unwrap();
+    assert_eq!(write(&folder), Ok(0));
+    assert_eq!(std::fs::read_to_string(folder.join("lock.json")).unwrap(), text);
+}
+
 // What the tests ask of a problem and of its run
 
 /// All problems, those that must be rejected among them.
@@ -465,4 +568,34 @@ impl Work for InDoubles<'_> {
 fn run(problem: &ProblemFile) -> Run {
     let Dimensions { n, m, .. } = problem.dimensions();
     shape::dispatch(n, m, InDoubles(problem)).unwrap()
+}
+
+fn locked(id: &str) -> &'static Case {
+    let all = case::all().unwrap();
+    all.iter().find(|case| case.problem.id == id).unwrap()
+}
+
+/// A folder that holds nothing but a lock.
+fn with_lock(name: &str, lock: &str) -> PathBuf {
+    let folder = temporary(name);
+    std::fs::create_dir_all(&folder).unwrap();
+    std::fs::write(folder.join("lock.json"), lock).unwrap();
+    folder
+}
+
+/// A place of this test's own, where nothing is.
+fn temporary(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("cases").join(name);
+    let _ = std::fs::remove_dir_all(&folder);
+    folder
+}
+
+/// The names of the files in a folder, in order.
+fn names(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).unwrap();
+    let mut names: Vec<String> = entries
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
 }

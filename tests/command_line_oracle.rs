@@ -36,13 +36,12 @@ fn every_command_has_help_with_its_options() {
             ][..],
         ),
         (&["trace"], &["--digits", "--json", "--csv", "standard input"]),
-        (&["cases"], &["list", "show", "copy", "verify", "schema", "write"]),
+        (&["cases"], &["list", "show", "copy", "verify", "schema"]),
         (&["cases", "list"], &["--case", "--flag", "--kind", "--json"]),
         (&["cases", "show"], &["--json"]),
         (&["cases", "copy"], &["--case", "long CSV"]),
         (&["cases", "verify"], &["--case", "--json"]),
         (&["cases", "schema"], &["problem", "trace"]),
-        (&["cases", "write"], &["--folder", "maintainers"]),
         (&["variants"], &["--json"]),
         (
             &["answer"],
@@ -393,93 +392,6 @@ fn schemas_are_printed_as_they_are_published() {
     assert!(refuses(&["cases", "schema", "answer"], 2).contains("[possible values: problem, trace, certificate]"));
 }
 
-// Writing cases
-
-/// A published case is never changed: neither its problem, nor its name after it was withdrawn.
-#[test]
-fn a_published_case_is_not_written_again() {
-    let lock = json!(case::lock().unwrap());
-    let place = lock["cases"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .position(|case| case["id"] == "update.kalman")
-        .unwrap();
-    let mut changed = lock.clone();
-    let digest = case::digest("another problem");
-    changed["cases"][place]["problem"] = json!(digest);
-    let mut withdrawn = lock.clone();
-    withdrawn["cases"][place]["withdrawn"] = json!("its purpose was another case's");
-    // One is new besides: it is not written either.
-    for lock in [&mut changed, &mut withdrawn] {
-        lock["cases"]
-            .as_array_mut()
-            .unwrap()
-            .retain(|case| case["id"] != "update.cubature-3");
-        let folder = with_lock("not written again", &lock.to_string());
-        let complaint = refuses(&["cases", "write", "--folder", folder.to_str().unwrap()], 2);
-        assert!(
-            complaint.contains("`update.kalman` is published and was changed or withdrawn"),
-            "{complaint}"
-        );
-        assert_eq!(names(&folder), ["lock.json"]);
-        assert_eq!(
-            std::fs::read_to_string(folder.join("lock.json")).unwrap(),
-            lock.to_string()
-        );
-    }
-}
-
-#[test]
-fn a_lock_that_cannot_be_read_is_named_and_nothing_is_written() {
-    for (lock, words) in [
-        ("", "EOF"),
-        ("{\"format\":\"immaculate-lock/1\"}", "missing field `cases`"),
-        ("{\"format\":\"immaculate-lock/2\",\"cases\":[]}", "immaculate-lock/2"),
-        (
-            "{\"format\":\"immaculate-lock/1\",\"cases\":[],\"colour\":1}",
-            "unknown field `colour`",
-        ),
-    ] {
-        let folder = with_lock("bad lock", lock);
-        let complaint = refuses(&["cases", "write", "--folder", folder.to_str().unwrap()], 2);
-        assert!(
-            complaint.contains("lock.json: ") && complaint.contains(words),
-            "{complaint}"
-        );
-        assert_eq!(names(&folder), ["lock.json"]);
-    }
-    let nowhere = temporary("no folder");
-    let complaint = refuses(&["cases", "write", "--folder", nowhere.to_str().unwrap()], 2);
-    assert!(complaint.contains("lock.json: ") && !nowhere.exists(), "{complaint}");
-}
-
-/// Exact: new cases are written as the published ones were, and the lock has them last.
-#[test]
-fn new_cases_are_written_and_locked() {
-    let mut lock = case::lock().unwrap();
-    let new = ["update.kalman", "rejected.shape.matrix"];
-    lock.cases.retain(|case| !new.contains(&case.id.as_str()));
-    let before = lock.cases.len();
-    let folder = with_lock("new", &json!(lock).to_string());
-    let write = ["cases", "write", "--folder", folder.to_str().unwrap()];
-    assert!(succeeds(&write).starts_with("2 cases written to "));
-    assert_eq!(names(&folder).len(), 5);
-    for id in new {
-        let read = |name: String| std::fs::read_to_string(folder.join(name)).unwrap();
-        assert_eq!(read(case::problem_name(id)), of(id).problem_text);
-        assert_eq!(read(case::trace_name(id)), of(id).trace_text);
-    }
-    let written: case::Lock =
-        serde_json::from_str(&std::fs::read_to_string(folder.join("lock.json")).unwrap()).unwrap();
-    assert_eq!(written.cases[..before], lock.cases);
-    assert_eq!([&written.cases[before].id, &written.cases[before + 1].id], new);
-    // Once more: nothing is new.
-    let text = std::fs::read_to_string(folder.join("lock.json")).unwrap();
-    assert!(succeeds(&write).starts_with("0 cases written to "));
-    assert_eq!(std::fs::read_to_string(folder.join("lock.json")).unwrap(), text);
-}
-
 // Variants and answers
 
 #[test]
@@ -589,14 +501,6 @@ fn temporary(name: &str) -> PathBuf {
     let _ = std::fs::remove_dir_all(&place);
     let _ = std::fs::remove_file(&place);
     place
-}
-
-/// A folder of cases in which there is nothing but a lock.
-fn with_lock(name: &str, lock: &str) -> PathBuf {
-    let folder = temporary(name);
-    std::fs::create_dir_all(&folder).unwrap();
-    std::fs::write(folder.join("lock.json"), lock).unwrap();
-    folder
 }
 
 /// The values of a JSON value that are neither lists nor objects, in their order.

@@ -31,7 +31,7 @@ const LONG_FUNCTIONS: [(&str, &str, &str); 4] = [
 const LONGEST_FUNCTION: usize = 60;
 
 /// Where the program may end instead of answering: only where the cause is a defect of the program itself.
-const EXPECTATIONS: [(&str, usize, &str); 12] = [
+const EXPECTATIONS: [(&str, usize, &str); 11] = [
     ("src/model/registry.rs", 1, "the files in spec/ are part of the program"),
     (
         "src/paper/derbez2000/scenario.rs",
@@ -52,11 +52,6 @@ const EXPECTATIONS: [(&str, usize, &str); 12] = [
         "src/paper/sustika2015/truth.rs",
         1,
         "the covariances of constant models",
-    ),
-    (
-        "src/oracle/published/runs.rs",
-        1,
-        "the scenarios are part of the program",
     ),
     (
         "src/paper/specification.rs",

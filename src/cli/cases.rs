@@ -1,16 +1,14 @@
 //! `immaculate cases`: the published cases.
 //!
-//! After this file the reader knows how cases are listed, copied and proven again, and that only `cases write` writes them and never
-//! changes one.
+//! After this file the reader knows how cases are listed, copied and proven again.
 
 use super::progress::bar;
 use super::select::Select;
-use super::{Done, Refusal, json_text, make_directory, read_file, write_file};
+use super::{Done, Refusal, json_text, make_directory, write_file};
 use clap::{Args, Subcommand, ValueEnum};
-use immaculate::oracle::case::{self, Expected, LOCK, Lock, Locked};
-use immaculate::oracle::certify::{certify, long_csv};
-use immaculate::oracle::problem::ProblemFile;
-use immaculate::oracle::published;
+use immaculate::oracle::case::{self, Expected};
+use immaculate::oracle::certify::long_csv;
+use immaculate::oracle::flags::FLAGS;
 use immaculate::oracle::schema;
 use immaculate::oracle::trace::Dimensions;
 use immaculate::report;
@@ -63,12 +61,6 @@ enum Action {
         #[arg(value_enum)]
         of: Format,
     },
-    /// Certify and write the cases that are not published yet (for maintainers)
-    Write {
-        /// The folder of the cases in the source tree
-        #[arg(long, value_name = "DIR", default_value = "fixtures/cases")]
-        folder: PathBuf,
-    },
 }
 
 /// A file format.
@@ -90,7 +82,6 @@ pub fn run(arguments: &Cases) -> Result<Done, Refusal> {
         Action::Schema {
             of: Format::Certificate,
         } => Ok(json_text(&schema::of_certificates()).into()),
-        Action::Write { folder } => write(folder),
     }
 }
 
@@ -109,7 +100,7 @@ fn list(select: &Select, as_json: bool) -> Result<Done, Refusal> {
                 })
             })
             .collect();
-        return Ok(json_text(&json!({ "cases": values, "flags": published::FLAGS.to_vec() })).into());
+        return Ok(json_text(&json!({ "cases": values, "flags": FLAGS.to_vec() })).into());
     }
     Ok(report::cases::list(&cases).into())
 }
@@ -175,80 +166,4 @@ fn verify(select: &Select, as_json: bool) -> Result<Done, Refusal> {
         text,
         status: u8::from(is_wrong),
     })
-}
-
-/// A case that is to be written: its id, and its two files.
-type Written = (String, String, String);
-
-fn write(folder: &Path) -> Result<Done, Refusal> {
-    let path = folder.join(LOCK);
-    let text = read_file(&path)?;
-    let mut lock = Lock::read(&text).map_err(|error| Refusal::request(format!("{}: {error}", path.display())))?;
-    let problems = published::all();
-    for problem in problems
-        .iter()
-        .chain(published::rejected().iter().map(|(problem, ..)| problem))
-    {
-        check_unchanged(problem, &lock)?;
-    }
-    let is_new = |id: &str| !lock.cases.iter().any(|locked| locked.id == id);
-    let new: Vec<&ProblemFile> = problems.iter().filter(|problem| is_new(&problem.id)).collect();
-    let bar = bar(new.len(), "certifying {wide_bar} {pos}/{len} cases, {elapsed}");
-    let written: Result<Vec<Written>, Refusal> = new
-        .par_iter()
-        .map(|problem| {
-            let certified = certify(problem).map_err(|error| Refusal::request(format!("{}: {error}", problem.id)))?;
-            bar.inc(1);
-            let id = problem.id.clone();
-            Ok((
-                id.clone(),
-                case::problem_text(problem),
-                case::trace_text(&id, &certified),
-            ))
-        })
-        .collect();
-    bar.finish_and_clear();
-    let mut written = written?;
-    for (problem, class, reason) in published::rejected() {
-        if is_new(&problem.id) {
-            let id = problem.id.clone();
-            written.push((
-                id.clone(),
-                case::problem_text(&problem),
-                case::rejection_text(&id, class, reason),
-            ));
-        }
-    }
-    for (id, problem, trace) in &written {
-        write_file(&folder.join(case::problem_name(id)), problem)?;
-        write_file(&folder.join(case::trace_name(id)), trace)?;
-        lock.cases.push(Locked {
-            id: id.clone(),
-            problem: case::digest(problem),
-            trace: case::digest(trace),
-            withdrawn: None,
-        });
-    }
-    write_file(&path, &json_text(&json!(lock)))?;
-    Ok(format!(
-        "{} cases written to {}, {} were there\n",
-        written.len(),
-        folder.display(),
-        lock.cases.len() - written.len()
-    )
-    .into())
-}
-
-/// A published problem must be what it was.
-fn check_unchanged(problem: &ProblemFile, lock: &Lock) -> Result<(), Refusal> {
-    let Some(locked) = lock.cases.iter().find(|locked| locked.id == problem.id) else {
-        return Ok(());
-    };
-    if locked.withdrawn.is_none() && locked.problem == case::digest(&case::problem_text(problem)) {
-        return Ok(());
-    }
-    Err(Refusal::request(format!(
-        "`{}` is published and was changed or withdrawn; a published case stays as it is: give the new one another id",
-        problem.id
-    )))
 }

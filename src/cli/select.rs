@@ -15,7 +15,7 @@ pub struct Select {
     /// Only cases with this flag; may be given again (`immaculate cases list` knows the flags)
     #[arg(long = "flag", value_name = "FLAG")]
     flags: Vec<String>,
-    /// Only cases of this filter: kalman, unscented, a rule, fixed-gain or fixed-gain-unmixed; may be given again
+    /// Only cases of this filter; may be given again (`immaculate cases list` knows the filters)
     #[arg(long = "kind", value_name = "KIND")]
     kinds: Vec<String>,
 }

@@ -11,7 +11,7 @@
 //!
 //! # How a case is made
 //!
-//! A [`problem`] is a file of short decimals, checked before it is run; [`published`] holds all that there are, with what each is for.
+//! A [`problem`] is a file of short decimals, checked before it is run; [`flags`] has the words by which the published ones are marked.
 //! [`setup`] puts its numbers into any number system, [`shape`] its dimensions into types, and [`run`] runs it there: by itself, or along
 //! another program's values. [`trace`] is what comes out, under the names of the file format; [`csv`] says the same in a long table,
 //! [`schema`] describes the files, and [`invalid`] has the sentence for each file that is refused.
@@ -60,13 +60,13 @@ pub mod certify;
 pub mod check;
 pub mod csv;
 pub mod diagnose;
+pub mod flags;
 pub mod folder;
 pub mod invalid;
 pub mod judge;
 pub mod noise;
 pub mod problem;
 pub mod process;
-pub mod published;
 pub mod run;
 pub mod scale;
 pub mod schema;

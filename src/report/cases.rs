@@ -5,14 +5,15 @@
 use super::{never_broken, table, wrapped};
 use crate::oracle::case::{BadCase, Case};
 use crate::oracle::certify::Certified;
-use crate::oracle::published::FLAGS;
+use crate::oracle::flags::FLAGS;
 use crate::oracle::trace::Dimensions;
 use comfy_table::CellAlignment;
 use serde_json::{Value, json};
+use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::time::Duration;
 
-/// One line a case, and the flags.
+/// One line a case, the filters, and the flags.
 pub fn list(cases: &[&Case]) -> String {
     let mut table = table(&["case", "n", "m", "modes", "steps", "filter", "flags"]);
     for column in table.column_iter_mut().skip(5) {
@@ -32,7 +33,14 @@ pub fn list(cases: &[&Case]) -> String {
             problem.flags.join(" "),
         ]);
     }
-    let mut text = format!("{table}\n{} cases. The flags:\n", cases.len());
+    let filters: BTreeSet<&str> = cases.iter().map(|case| case.problem.filter.name()).collect();
+    let filters = filters.into_iter().collect::<Vec<&str>>().join(", ");
+    let mut text = format!(
+        "{table}\n{} cases. The filters:\n{}",
+        cases.len(),
+        wrapped(&filters, "  ")
+    );
+    text.push_str("The flags:\n");
     for (flag, meaning) in FLAGS {
         if cases
             .iter()

@@ -6,10 +6,10 @@
 
 use super::draft::{Draft, covariance, estimate, filter, identity, mode, rows, unscented};
 use super::scene::{PLANE_TRACK, axis, plane, scalar};
-use crate::oracle::problem::{FilterFile, ProblemFile};
+use immaculate::oracle::problem::{FilterFile, ProblemFile};
 
 /// The problems of this file.
-pub(super) fn all() -> Vec<ProblemFile> {
+pub fn all() -> Vec<ProblemFile> {
     [mixing(), likelihood(), combination(), updates()].concat()
 }
 

@@ -4,7 +4,7 @@
 //! from standard deviations and correlations, and, where a formula gives a number, its first twelve significant digits. The rounded
 //! number *is* the input.
 
-use crate::oracle::problem::{
+use immaculate::oracle::problem::{
     Conventions, EstimateFile, FORMAT, FilterFile, InitialFile, MeasurementAt, MeasurementFile, ModeFile, ProblemFile,
     Rows,
 };
@@ -13,34 +13,34 @@ use crate::oracle::problem::{
 const DIGITS: usize = 12;
 
 /// A number with [`DIGITS`] significant digits.
-pub(super) fn rounded(value: f64) -> f64 {
+pub fn rounded(value: f64) -> f64 {
     rounded_to(value, DIGITS)
 }
 
 /// The double nearest to the decimal with so many significant digits; a zero has no sign.
-pub(super) fn rounded_to(value: f64, digits: usize) -> f64 {
+pub fn rounded_to(value: f64, digits: usize) -> f64 {
     let places = digits - 1;
     format!("{value:.places$e}").parse().unwrap_or(value) + 0.0
 }
 
 /// A matrix from its rows.
-pub(super) fn rows<const H: usize, const W: usize>(entries: [[f64; W]; H]) -> Rows {
+pub fn rows<const H: usize, const W: usize>(entries: [[f64; W]; H]) -> Rows {
     entries.map(|row| row.to_vec()).to_vec()
 }
 
 /// The unit matrix.
-pub(super) fn identity(n: usize) -> Rows {
+pub fn identity(n: usize) -> Rows {
     square(n, |row, column| if row == column { 1.0 } else { 0.0 })
 }
 
 /// A square matrix from a formula.
-pub(super) fn square(n: usize, entry: impl Fn(usize, usize) -> f64) -> Rows {
+pub fn square(n: usize, entry: impl Fn(usize, usize) -> f64) -> Rows {
     let row = |row| (0..n).map(|column| entry(row, column)).collect();
     (0..n).map(row).collect()
 }
 
 /// A matrix, every entry changed by a formula of row, column and entry, and rounded.
-pub(super) fn map(matrix: &Rows, change: impl Fn(usize, usize, f64) -> f64) -> Rows {
+pub fn map(matrix: &Rows, change: impl Fn(usize, usize, f64) -> f64) -> Rows {
     let changed = |(row, entries): (usize, &Vec<f64>)| {
         let entries = entries.iter().enumerate();
         entries
@@ -51,7 +51,7 @@ pub(super) fn map(matrix: &Rows, change: impl Fn(usize, usize, f64) -> f64) -> R
 }
 
 /// A covariance from standard deviations and correlations: ρ₂₁, ρ₃₁, ρ₃₂, ρ₄₁, … below the diagonal, row by row.
-pub(super) fn covariance(deviations: &[f64], correlations: &[f64]) -> Rows {
+pub fn covariance(deviations: &[f64], correlations: &[f64]) -> Rows {
     let entry = |row: usize, column: usize| {
         let (low, high) = (row.min(column), row.max(column));
         let correlation = if low == high {
@@ -65,7 +65,7 @@ pub(super) fn covariance(deviations: &[f64], correlations: &[f64]) -> Rows {
 }
 
 /// An estimate.
-pub(super) fn estimate(mean: &[f64], covariance: Rows) -> EstimateFile {
+pub fn estimate(mean: &[f64], covariance: Rows) -> EstimateFile {
     EstimateFile {
         mean: mean.to_vec(),
         covariance: Some(covariance),
@@ -73,7 +73,7 @@ pub(super) fn estimate(mean: &[f64], covariance: Rows) -> EstimateFile {
 }
 
 /// A mode.
-pub(super) fn mode(name: &str, transition: Rows, noise: Rows) -> ModeFile {
+pub fn mode(name: &str, transition: Rows, noise: Rows) -> ModeFile {
     ModeFile {
         name: name.to_owned(),
         transition,
@@ -82,7 +82,7 @@ pub(super) fn mode(name: &str, transition: Rows, noise: Rows) -> ModeFile {
 }
 
 /// The filter of a name: `kalman`, or that of a rule.
-pub(super) fn filter(name: &str) -> FilterFile {
+pub fn filter(name: &str) -> FilterFile {
     match name {
         "kalman" => FilterFile::Kalman {},
         rule => FilterFile::Cubature { rule: rule.to_owned() },
@@ -90,12 +90,12 @@ pub(super) fn filter(name: &str) -> FilterFile {
 }
 
 /// An unscented filter.
-pub(super) fn unscented(alpha: f64, beta: f64, kappa: f64) -> FilterFile {
+pub fn unscented(alpha: f64, beta: f64, kappa: f64) -> FilterFile {
     FilterFile::Unscented { alpha, beta, kappa }
 }
 
 /// Owned words.
-pub(super) fn words(words: &[&str]) -> Vec<String> {
+pub fn words(words: &[&str]) -> Vec<String> {
     words.iter().map(|&word| word.to_owned()).collect()
 }
 
@@ -105,7 +105,7 @@ pub(super) struct Draft(pub(super) ProblemFile);
 
 impl Draft {
     /// A problem of Kalman filters with a linear measurement, whose modes all go on as they are, without measurements.
-    pub(super) fn new(state: &[&str], units: &[&str], parts: Vec<(ModeFile, EstimateFile)>) -> Self {
+    pub fn new(state: &[&str], units: &[&str], parts: Vec<(ModeFile, EstimateFile)>) -> Self {
         let r = parts.len();
         let (modes, estimates) = parts.into_iter().unzip();
         Self(ProblemFile {
@@ -130,14 +130,14 @@ impl Draft {
     }
 
     /// The measurement z = H x + v and the covariance of v.
-    pub(super) fn linear(mut self, matrix: Rows, noise: Rows) -> Self {
+    pub fn linear(mut self, matrix: Rows, noise: Rows) -> Self {
         self.0.measurement = MeasurementFile::Linear { matrix };
         self.0.noise = noise;
         self
     }
 
     /// A sensor that measures the named components, and the covariance of its noise.
-    pub(super) fn polar(mut self, components: &[&str], position: [usize; 2], sensor: [f64; 2], noise: Rows) -> Self {
+    pub fn polar(mut self, components: &[&str], position: [usize; 2], sensor: [f64; 2], noise: Rows) -> Self {
         self.0.measurement = MeasurementFile::RangeBearing {
             components: words(components),
             position,
@@ -148,13 +148,13 @@ impl Draft {
     }
 
     /// The filter.
-    pub(super) fn filter(mut self, filter: FilterFile) -> Self {
+    pub fn filter(mut self, filter: FilterFile) -> Self {
         self.0.filter = filter;
         self
     }
 
     /// The modes of these places only, each as probable as before in relation to the others, on another chain.
-    pub(super) fn keep(mut self, places: &[usize]) -> Self {
+    pub fn keep(mut self, places: &[usize]) -> Self {
         let problem = &mut self.0;
         problem.modes = places.iter().map(|&j| problem.modes[j].clone()).collect();
         problem.initial.modes = places.iter().map(|&j| problem.initial.modes[j].clone()).collect();
@@ -166,20 +166,20 @@ impl Draft {
     }
 
     /// The transition matrix, and the probabilities at step 0.
-    pub(super) fn chain(mut self, transition: Rows, probabilities: &[f64]) -> Self {
+    pub fn chain(mut self, transition: Rows, probabilities: &[f64]) -> Self {
         self.0.transition = transition;
         self.0.initial.mode_probabilities = probabilities.to_vec();
         self
     }
 
     /// One measurement a step.
-    pub(super) fn sees<const M: usize>(self, measurements: &[[f64; M]]) -> Self {
+    pub fn sees<const M: usize>(self, measurements: &[[f64; M]]) -> Self {
         let all: Vec<Option<[f64; M]>> = measurements.iter().copied().map(Some).collect();
         self.sees_or_misses(&all)
     }
 
     /// One measurement a step, or none.
-    pub(super) fn sees_or_misses<const M: usize>(mut self, measurements: &[Option<[f64; M]>]) -> Self {
+    pub fn sees_or_misses<const M: usize>(mut self, measurements: &[Option<[f64; M]>]) -> Self {
         let entry = |(place, z): (usize, &Option<[f64; M]>)| MeasurementAt {
             step: place + 1,
             z: z.map(|z| z.to_vec()),
@@ -189,12 +189,12 @@ impl Draft {
     }
 
     /// So many steps without a detection.
-    pub(super) fn misses(self, steps: usize) -> Self {
+    pub fn misses(self, steps: usize) -> Self {
         self.sees_or_misses::<1>(&vec![None; steps])
     }
 
     /// These steps, counted from 1, become missed detections.
-    pub(super) fn without(mut self, steps: &[usize]) -> Self {
+    pub fn without(mut self, steps: &[usize]) -> Self {
         for entry in &mut self.0.measurements {
             if steps.contains(&entry.step) {
                 entry.z = None;
@@ -204,7 +204,7 @@ impl Draft {
     }
 
     /// Every mode stands still: F is the unit matrix, and Q a ten-thousandth of what it was.
-    pub(super) fn still(mut self) -> Self {
+    pub fn still(mut self) -> Self {
         let n = self.0.state.len();
         for mode in &mut self.0.modes {
             mode.transition = identity(n);
@@ -214,13 +214,13 @@ impl Draft {
     }
 
     /// Any other change.
-    pub(super) fn with(mut self, change: impl FnOnce(&mut ProblemFile)) -> Self {
+    pub fn with(mut self, change: impl FnOnce(&mut ProblemFile)) -> Self {
         change(&mut self.0);
         self
     }
 
     /// The problem, with its name, its flags and its purpose.
-    pub(super) fn named(self, id: &str, flags: &[&str], about: &str) -> ProblemFile {
+    pub fn named(self, id: &str, flags: &[&str], about: &str) -> ProblemFile {
         ProblemFile {
             id: id.to_owned(),
             about: about.to_owned(),

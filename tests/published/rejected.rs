@@ -7,15 +7,15 @@ use super::converted::converted;
 use super::draft::Draft;
 use super::fixed_gain::plane_with_gains;
 use super::scene::{plane, radar};
-use crate::model::Conversion;
-use crate::oracle::invalid::Class;
-use crate::oracle::problem::{FilterFile, FixedGainFile, MeasurementFile, ProblemFile};
+use immaculate::model::Conversion;
+use immaculate::oracle::invalid::Class;
+use immaculate::oracle::problem::{FilterFile, FixedGainFile, MeasurementFile, ProblemFile};
 
 /// A problem, the class of the reason for which it must be refused, and the reason.
 pub type Rejected = (ProblemFile, Class, &'static str);
 
 /// The problems of this file.
-pub(super) fn all() -> Vec<Rejected> {
+pub fn all() -> Vec<Rejected> {
     [
         shapes(),
         probabilities(),

@@ -5,10 +5,10 @@
 
 use super::draft::{Draft, filter, unscented};
 use super::scene::{buoy, derivatives, radar, scalar};
-use crate::oracle::problem::{FilterFile, ProblemFile};
+use immaculate::oracle::problem::{FilterFile, ProblemFile};
 
 /// The problems of this file.
-pub(super) fn all() -> Vec<ProblemFile> {
+pub fn all() -> Vec<ProblemFile> {
     let mut all = Vec::new();
     for (name, rule, about) in RULES {
         all.extend([

@@ -6,10 +6,10 @@
 //! hides behind a zero or a symmetry.
 
 use super::draft::{Draft, covariance, estimate, filter, mode, rounded, rows, square};
-use crate::oracle::problem::{EstimateFile, ModeFile, Rows};
+use immaculate::oracle::problem::{EstimateFile, ModeFile, Rows};
 
 /// A chain of three modes that is neither symmetric nor doubly stochastic.
-pub(super) fn three_mode_chain() -> Rows {
+pub fn three_mode_chain() -> Rows {
     rows([[0.85, 0.1, 0.05], [0.2, 0.7, 0.1], [0.08, 0.22, 0.7]])
 }
 
@@ -17,7 +17,7 @@ pub(super) fn three_mode_chain() -> Rows {
 pub(super) const PROBABILITIES: [f64; 3] = [0.5, 0.3, 0.2];
 
 /// One number that grows or decays, measured: n = 1, m = 1, two modes.
-pub(super) fn scalar() -> Draft {
+pub fn scalar() -> Draft {
     let part = |name, f, q, mean, p| (mode(name, rows([[f]]), rows([[q]])), estimate(&[mean], rows([[p]])));
     Draft::new(
         &["x"],
@@ -30,7 +30,7 @@ pub(super) fn scalar() -> Draft {
 }
 
 /// Position and velocity on a line, measured together: n = 2, m = 1, three modes.
-pub(super) fn axis() -> Draft {
+pub fn axis() -> Draft {
     let names = ["constant velocity", "braking", "accelerating"];
     let transitions = [
         rows([[1.01, 0.98], [-0.02, 0.97]]),
@@ -118,7 +118,7 @@ fn plane_parts() -> Draft {
 }
 
 /// A target in the plane, its position measured askew: n = 4, m = 2, three modes, Kalman filters.
-pub(super) fn plane() -> Draft {
+pub fn plane() -> Draft {
     let h = rows([[1.0, 0.1, -0.2, 0.05], [0.15, -0.08, 1.1, 0.12]]);
     plane_parts()
         .linear(h, covariance(&[11.0, 9.0], &[0.3]))
@@ -139,7 +139,7 @@ pub(super) const PLANE_TRACK: [[f64; 2]; 6] = [
 pub(super) const SENSOR: [f64; 2] = [-40.0, 25.0];
 
 /// A target in the plane, its range and bearing measured from [`SENSOR`]: n = 4, m = 2, three modes.
-pub(super) fn radar(rule: &str) -> Draft {
+pub fn radar(rule: &str) -> Draft {
     plane_parts()
         .polar(&["range", "bearing"], [0, 2], SENSOR, covariance(&[9.0, 0.055], &[0.3]))
         .filter(filter(rule))
@@ -157,7 +157,7 @@ pub(super) const RADAR_TRACK: [[f64; 2]; 6] = [
 ];
 
 /// A target that is only a position, its range and bearing measured from near by: n = 2, m = 2, one mode.
-pub(super) fn buoy() -> Draft {
+pub fn buoy() -> Draft {
     let drift = mode(
         "drift",
         rows([[1.03, 0.08], [-0.06, 0.97]]),
@@ -194,7 +194,7 @@ fn small_covariance(deviations: &[f64], variant: usize) -> Rows {
 /// A target in the plane with an order of derivatives more for each letter of `letters`, its range and bearing measured from
 /// [`SENSOR`]: the entries of the state are x, vx, ax, … and then y, vy, ay, …, and for odd n the speed u of a current
 /// at the end.
-pub(super) fn derivatives(n: usize, rule: &str) -> Draft {
+pub fn derivatives(n: usize, rule: &str) -> Draft {
     let half = n / 2;
     let (names, units) = (["", "v", "a", "j"], ["m", "m/s", "m/s^2", "m/s^3"]);
     let order = |entry: usize| if entry < 2 * half { entry % half } else { 1 };

@@ -7,18 +7,18 @@
 use super::draft::{Draft, covariance, estimate, filter, mode, rounded, rounded_to, rows};
 use super::numbers::rounded_rows;
 use super::scene::{PLANE_TRACK, axis, plane};
-use crate::model::acceleration::{
+use immaculate::model::acceleration::{
     acceleration_response, constant_acceleration, embedded_constant_velocity, embedded_velocity_response,
     position_matrix, response_noise,
 };
-use crate::oracle::problem::{FilterFile, FixedGainFile, ProblemFile, Rows, UNMIXED};
-use crate::paper::monte_carlo::Generator;
-use crate::steady::gains::{
+use immaculate::oracle::problem::{FilterFile, FixedGainFile, ProblemFile, Rows, UNMIXED};
+use immaculate::paper::monte_carlo::Generator;
+use immaculate::steady::gains::{
     alpha_beta_gain, alpha_beta_gamma_gain, alpha_beta_gamma_root, alpha_beta_root, innovation_variance, tracking_index,
 };
 
 /// The problems of this file.
-pub(super) fn all() -> Vec<ProblemFile> {
+pub fn all() -> Vec<ProblemFile> {
     [single_steps(), several(), derbez2000()].concat()
 }
 
@@ -46,7 +46,7 @@ fn with_gains(draft: Draft, mixing: &str, modes: Vec<FixedGainFile>) -> Draft {
 }
 
 /// The plane with fixed gains.
-pub(super) fn plane_with_gains(mixing: &str) -> Draft {
+pub fn plane_with_gains(mixing: &str) -> Draft {
     let modes = vec![
         given(
             rows([[0.414, 0.02], [0.062, 0.003], [-0.096, 0.425], [-0.014, 0.09]]),

@@ -6,12 +6,12 @@
 
 use super::draft::{Draft, estimate, filter, mode, rounded_to, unscented, words};
 use super::numbers::rounded_rows;
-use crate::model::Measurement;
-use crate::oracle::problem::{FilterFile, MeasurementFile, ProblemFile};
-use crate::paper::Paper;
-use crate::paper::monte_carlo::Generator;
-use crate::paper::scenario::{Draw, Scenario};
-use crate::paper::specification::Choices;
+use immaculate::model::Measurement;
+use immaculate::oracle::problem::{FilterFile, MeasurementFile, ProblemFile};
+use immaculate::paper::Paper;
+use immaculate::paper::monte_carlo::Generator;
+use immaculate::paper::scenario::{Draw, Scenario};
+use immaculate::paper::specification::Choices;
 
 /// The seed of the draws.
 const SEED: u64 = 2017;
@@ -21,7 +21,7 @@ const DRAWN_DIGITS: usize = 9;
 const PROBABILITY_DIGITS: usize = 15;
 
 /// The problems of this file.
-pub(super) fn all() -> Vec<ProblemFile> {
+pub fn all() -> Vec<ProblemFile> {
     [zhu2016(), liu2017()].concat()
 }
 

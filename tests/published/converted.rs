@@ -7,15 +7,15 @@
 use super::draft::{Draft, covariance, estimate, mode, rounded_to, rows, unscented};
 use super::numbers::rounded_rows;
 use super::scene::{RADAR_TRACK, SENSOR, radar};
-use crate::model::Conversion;
-use crate::model::angle::wrap;
-use crate::model::wiener::{
+use immaculate::model::Conversion;
+use immaculate::model::angle::wrap;
+use immaculate::model::wiener::{
     acceleration_noise_in_the_plane, constant_acceleration_in_the_plane, constant_velocity_in_the_plane,
     velocity_noise_in_the_plane,
 };
-use crate::number::Real;
-use crate::oracle::problem::{FilterFile, MeasurementFile, ProblemFile};
-use crate::paper::monte_carlo::Generator;
+use immaculate::number::Real;
+use immaculate::oracle::problem::{FilterFile, MeasurementFile, ProblemFile};
+use immaculate::paper::monte_carlo::Generator;
 use nalgebra::{Matrix6, Vector6};
 
 /// The seed of the draws, and how many digits of them are kept.
@@ -29,19 +29,19 @@ const RANGE_DEVIATION: f64 = 10.0;
 const BEARING_DEVIATION: f64 = std::f64::consts::PI / 180.0;
 
 /// The problems of this file.
-pub(super) fn all() -> Vec<ProblemFile> {
+pub fn all() -> Vec<ProblemFile> {
     [generic(), special(), unequal(), sustika2015()].concat()
 }
 
 /// A filter of a conversion.
-pub(super) fn conversion(conversion: Conversion) -> FilterFile {
+pub fn conversion(conversion: Conversion) -> FilterFile {
     FilterFile::Converted {
         conversion: conversion.name().to_owned(),
     }
 }
 
 /// The radar, whose measurements are converted; with noise of these deviations.
-pub(super) fn converted(kind: Conversion, deviations: [f64; 2]) -> Draft {
+pub fn converted(kind: Conversion, deviations: [f64; 2]) -> Draft {
     radar("cubature-3")
         .polar(&["range", "bearing"], [0, 2], SENSOR, covariance(&deviations, &[0.0]))
         .filter(conversion(kind))

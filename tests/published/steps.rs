@@ -5,10 +5,10 @@
 
 use super::draft::{covariance, filter, map, rows, unscented};
 use super::scene::{PLANE_TRACK, RADAR_TRACK, SENSOR, axis, derivatives, plane, radar, scalar};
-use crate::oracle::problem::{MeasurementFile, ProblemFile};
+use immaculate::oracle::problem::{MeasurementFile, ProblemFile};
 
 /// The problems of this file.
-pub(super) fn all() -> Vec<ProblemFile> {
+pub fn all() -> Vec<ProblemFile> {
     [linear_steps(), polar_steps(), components(), several()].concat()
 }
 

@@ -4,17 +4,17 @@
 
 use super::draft::{Draft, covariance, filter, map, rounded, rows, square};
 use super::scene::{PLANE_TRACK, RADAR_TRACK, SENSOR, plane, radar};
-use crate::model::motion::{constant_velocity, coordinated_turn};
-use crate::oracle::problem::{MeasurementFile, ProblemFile, Rows};
+use immaculate::model::motion::{constant_velocity, coordinated_turn};
+use immaculate::oracle::problem::{MeasurementFile, ProblemFile, Rows};
 use nalgebra::SMatrix;
 
 /// The problems of this file.
-pub(super) fn all() -> Vec<ProblemFile> {
+pub fn all() -> Vec<ProblemFile> {
     [far(), units(), singular()].concat()
 }
 
 /// A matrix as rounded rows.
-pub(super) fn rounded_rows<const H: usize, const W: usize>(matrix: &SMatrix<f64, H, W>) -> Rows {
+pub fn rounded_rows<const H: usize, const W: usize>(matrix: &SMatrix<f64, H, W>) -> Rows {
     let row = |row| (0..W).map(|column| rounded(matrix[(row, column)])).collect();
     (0..H).map(row).collect()
 }

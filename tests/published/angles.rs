@@ -5,11 +5,11 @@
 
 use super::draft::{Draft, covariance, filter, map, rounded, unscented};
 use super::scene::{RADAR_TRACK, radar};
-use crate::number::Real;
-use crate::oracle::problem::{MeasurementFile, ProblemFile};
+use immaculate::number::Real;
+use immaculate::oracle::problem::{MeasurementFile, ProblemFile};
 
 /// The problems of this file.
-pub(super) fn all() -> Vec<ProblemFile> {
+pub fn all() -> Vec<ProblemFile> {
     [crossings(), turns(), near(), conventions()].concat()
 }
 

@@ -5,10 +5,10 @@
 
 use super::draft::{covariance, estimate, mode, rows, unscented};
 use super::scene::{PLANE_TRACK, RADAR_TRACK, axis, plane, radar, scalar};
-use crate::oracle::problem::{EstimateFile, ProblemFile};
+use immaculate::oracle::problem::{EstimateFile, ProblemFile};
 
 /// The problems of this file.
-pub(super) fn all() -> Vec<ProblemFile> {
+pub fn all() -> Vec<ProblemFile> {
     [chains(), ends(), five_modes(), missed(), outliers()].concat()
 }
 
