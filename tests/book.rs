@@ -7,12 +7,14 @@
 
 use immaculate::book::doc::{Doc, PartKind};
 use immaculate::book::find::find;
+use immaculate::book::markup::plain;
 use immaculate::book::source::{File, items_of, source_files, test_files};
-use immaculate::book::{Entry, Realisation, entries, entries_of, html, markup, realisations};
+use immaculate::book::{Entry, Realisation, entries, entries_of, realisations};
 use immaculate::imm::Quantity;
 use immaculate::oracle::variant::{Kind, catalogue};
 use immaculate::oracle::{case, problem::ProblemFile};
 use immaculate::paper::Paper;
+use immaculate::report::page::{book as html, markup};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
@@ -477,7 +479,7 @@ fn links_lead_to_the_code_that_they_name_or_are_names() {
     );
     assert_eq!(html("G = [t²/2, t, 1]ᵀ"), "G = [t²/2, t, 1]ᵀ");
     assert_eq!(html("a < b, Vec<T>"), "a &lt; b, Vec&lt;T&gt;");
-    assert_eq!(markup::plain("[`mixture_mean`] of\n`x`", item), "mixture_mean of x");
+    assert_eq!(plain("[`mixture_mean`] of\n`x`", item), "mixture_mean of x");
 }
 
 #[test]

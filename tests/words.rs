@@ -784,7 +784,7 @@ fn the_words_of_the_page() {
 
 #[test]
 fn an_equation_in_the_book() {
-    let chapter = book::html::chapter(Paper::Zhu2016).into_string();
+    let chapter = report::page::book::chapter(Paper::Zhu2016).into_string();
     // One as it is printed, one that is corrected, one that is outside of steps, and one whose evidence is that of another.
     let mut text = String::new();
     for anchor in ["zhu2016-56", "zhu2016-24", "zhu2016-64", "zhu2016-14"] {
@@ -793,7 +793,7 @@ fn an_equation_in_the_book() {
         let _ = writeln!(text, "{}", without_lines(&words_of(section)));
     }
     insta::assert_snapshot!("book", text);
-    let index = without_lines(&words_of(&book::html::index().into_string()));
+    let index = without_lines(&words_of(&report::page::book::index().into_string()));
     let few: Vec<&str> = index.lines().take(60).collect();
     insta::assert_snapshot!("book_index", few.join("\n"));
 }

@@ -1,55 +1,10 @@
-//! LaTeX and doc comments as HTML.
+//! Doc comments as markdown: what stands in them, and as plain text.
 //!
-//! After this file the reader knows that formulas are MathML, which browsers show by themselves, and that links of doc comments lead to
-//! code in the book where it is there, and are names otherwise.
+//! After this file the reader knows that links of doc comments lead to code in the book where it is there, and are names otherwise.
 
 use super::source::Item;
 use super::{Realisation, realisations};
-use maud::{Markup, PreEscaped, html};
 use pulldown_cmark::{BrokenLink, CowStr, Event, Options, Parser, Tag, TagEnd};
-use pulldown_latex::config::DisplayMode;
-use pulldown_latex::{ParserError, RenderConfig, Storage, push_mathml};
-
-/// A formula on a line of its own as MathML, with its LaTeX as annotation.
-///
-/// # Errors
-///
-/// What in it is no LaTeX.
-pub fn math(latex: &str) -> Result<Markup, String> {
-    let storage = Storage::new();
-    let events: Result<Vec<_>, _> = pulldown_latex::Parser::new(latex, &storage).collect();
-    let events = events.map_err(|error| error.to_string())?;
-    // What stands in an annotation is text.
-    let annotation = html! { (latex) }.into_string();
-    let config = RenderConfig {
-        display_mode: DisplayMode::Block,
-        annotation: Some(&annotation),
-        ..RenderConfig::default()
-    };
-    let mut text = String::new();
-    let events = events.into_iter().map(Ok::<_, Box<ParserError>>);
-    push_mathml(&mut text, events, config).map_err(|error| error.to_string())?;
-    // The renderer writes the sign as it stands, and of a blank the name.
-    let text = text.replace("<mo><</mo>", "<mo>&lt;</mo>");
-    let text = text.replace("<mtext>&amp;nbsp;</mtext>", "<mspace width=\"0.33em\" />");
-    Ok(PreEscaped(text))
-}
-
-/// A formula as MathML; one that cannot be read as it is written, which a test excludes.
-pub fn formula(latex: &str) -> Markup {
-    math(latex).unwrap_or_else(|_| html! { pre { (latex) } })
-}
-
-/// Paragraphs of a doc comment.
-pub fn paragraphs(markdown: &str, of: &Item) -> Markup {
-    rendered(events(markdown, of).into_iter())
-}
-
-/// A sentence of a doc comment, without a paragraph around it.
-pub fn sentence(markdown: &str, of: &Item) -> Markup {
-    let is_paragraph = |event: &Event| matches!(event, Event::Start(Tag::Paragraph) | Event::End(TagEnd::Paragraph));
-    rendered(events(markdown, of).into_iter().filter(|event| !is_paragraph(event)))
-}
 
 /// The cells of a table of a doc comment, row by row, as text.
 pub fn text_rows(markdown: &str, of: &Item) -> Vec<Vec<String>> {
@@ -76,33 +31,11 @@ fn text_of<'a>(events: impl Iterator<Item = Event<'a>>) -> String {
     text
 }
 
-/// A table of a doc comment, with what its columns and rows are.
-pub fn table(markdown: &str, of: &Item, caption: &str) -> Markup {
-    let mut rows = cells(markdown, of).into_iter();
-    let header = rows.next().unwrap_or_default();
-    html! {
-        table class="dictionary" {
-            caption { (caption) }
-            thead { tr { @for cell in header { th scope="col" { (rendered(cell.into_iter())) } } } }
-            tbody {
-                @for row in rows {
-                    tr {
-                        @for (index, cell) in row.into_iter().enumerate() {
-                            @let cell = rendered(cell.into_iter());
-                            @if index == 0 { th scope="row" { (cell) } } @else { td { (cell) } }
-                        }
-                    }
-                }
-            }
-        }
-    }
-}
-
 /// A row of a table: what stands in each of its cells.
-type Row<'a> = Vec<Vec<Event<'a>>>;
+pub type Row<'a> = Vec<Vec<Event<'a>>>;
 
 /// The rows of the tables of a doc comment; the first is the header.
-fn cells<'a>(markdown: &'a str, of: &Item) -> Vec<Row<'a>> {
+pub fn cells<'a>(markdown: &'a str, of: &Item) -> Vec<Row<'a>> {
     let mut rows: Vec<Row> = Vec::new();
     for event in events(markdown, of) {
         match event {
@@ -124,14 +57,8 @@ fn cells<'a>(markdown: &'a str, of: &Item) -> Vec<Row<'a>> {
     rows
 }
 
-fn rendered<'a>(events: impl Iterator<Item = Event<'a>>) -> Markup {
-    let mut text = String::new();
-    pulldown_cmark::html::push_html(&mut text, events);
-    PreEscaped(text)
-}
-
 /// The markdown of an item, its links resolved.
-fn events<'a>(markdown: &'a str, of: &Item) -> Vec<Event<'a>> {
+pub fn events<'a>(markdown: &'a str, of: &Item) -> Vec<Event<'a>> {
     // A name in backticks and brackets is a link to the item of that name; anything else in brackets is a vector.
     let shortcut = |link: BrokenLink<'a>| {
         let is_name = link.reference.starts_with('`');

@@ -5,7 +5,7 @@
 //!
 //! ```text
 //! spec/<paper>/equations.toml ─┐
-//! src/   items, doc comments ──┼─▶ entries ─▶ html, and the report's text
+//! src/   items, doc comments ──┼─▶ entries ─▶ the report, as text and as a page
 //! tests/ names, places ────────┤
 //! spec/variants.toml ──────────┘
 //! ```
@@ -14,11 +14,10 @@
 //! - [`source`]: items and tests, from the files that are built into the program;
 //! - [`doc`]: a doc comment in its parts;
 //! - [`find`]: an equation by its number, name, quantity or function;
-//! - [`markup`]: LaTeX and doc comments as HTML; [`html`]: the book as HTML.
+//! - [`markup`]: the markdown of doc comments, and as plain text.
 
 pub mod doc;
 pub mod find;
-pub mod html;
 pub mod markup;
 pub mod reference;
 pub mod source;

@@ -263,9 +263,10 @@ impl CoastalRadar {
         }
     }
 
-    /// The roots in a cycle; and exp, ln, sin, cos, atan2. A root for each range, of 13 points and of their centre in each mode, and for each
-    /// pivot; an arcus tangent for each bearing; four logarithms and two exponentials of likelihoods; in the conversion cosine and sine
-    /// twice and the exponential of its factor.
+    /// The roots in a cycle; and exp, ln, sin, cos, atan2.
+    ///
+    /// A root for each range, of 13 points and of their centre in each mode, and for each pivot; an arcus tangent for each bearing; four
+    /// logarithms and two exponentials of likelihoods; in the conversion cosine and sine twice and the exponential of its factor.
     pub fn roots_and_functions(self) -> [usize; 2] {
         let likelihoods = 4 + 2;
         let ranges = 2 * 14;

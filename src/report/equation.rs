@@ -2,10 +2,10 @@
 //!
 //! After this file the reader knows how an equation is printed, with its code, and what can be run next.
 
-use super::{never_broken, table, wrapped};
+use super::{never_broken, table, words_whole, wrapped};
 use crate::book::doc::PartKind;
 use crate::book::markup::{plain, text_rows};
-use crate::book::{Entry, Realisation, html};
+use crate::book::{Entry, Realisation};
 use comfy_table::CellAlignment;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -26,6 +26,7 @@ pub fn table_of(entries: &[&Entry]) -> String {
             code.join(", "),
         ]);
     }
+    words_whole(&mut table, 3);
     let next = "`immaculate equation zhu2016 56` shows one in full; so do the name of a value and of a function";
     format!("{table}\n{} equations; {next}\n", entries.len())
 }
@@ -35,7 +36,7 @@ pub fn in_full(entry: &Entry) -> String {
     let equation = entry.equation;
     let mut text = format!("{}  {}\n", entry.reference, entry.title());
     text.push_str(&wrapped(&equation.meaning, "  "));
-    text.push_str(&wrapped(html::status(&equation.status), "  "));
+    text.push_str(&wrapped(status(&equation.status), "  "));
     text.push_str("\nLATEX\n");
     text.push_str(&indented(&equation.latex, "  "));
     if let Some(erratum) = &equation.erratum {
@@ -51,6 +52,15 @@ pub fn in_full(entry: &Entry) -> String {
     text.push_str(&mistakes(entry));
     text.push_str(&next(entry));
     text
+}
+
+/// The status in words.
+pub fn status(status: &str) -> &'static str {
+    match status {
+        "as-printed" => "The paper prints this form.",
+        "corrected" => "Corrected: the paper prints another form.",
+        _ => "Reconstructed: the paper needs it and does not print it, or the available copy has lost it.",
+    }
 }
 
 /// An item: its place, its doc comment part by part, and its code.

@@ -35,7 +35,7 @@ pub mod trace;
 pub mod variants;
 
 use crate::paper::specification::Citation;
-use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Table, TableStyle};
+use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Table, TableStyle, Width};
 
 /// The width that all tables fit.
 pub const WIDTH: u16 = 100;
@@ -64,6 +64,20 @@ fn table(header: &[&str]) -> Table {
 fn never_broken(table: &mut Table, index: usize) {
     if let Some(column) = table.column_mut(index) {
         column.set_constraint(ColumnConstraint::ContentWidth);
+    }
+}
+
+/// A column that is as wide as its longest word at least, so that no identifier is broken.
+fn words_whole(table: &mut Table, index: usize) {
+    let mut longest = 0;
+    for cell in table.row_iter().filter_map(|row| row.cell_iter().nth(index)) {
+        for word in cell.content().split_whitespace() {
+            longest = longest.max(word.chars().count());
+        }
+    }
+    if let Some(column) = table.column_mut(index) {
+        let width = u16::try_from(longest).unwrap_or(WIDTH) + column.padding_width();
+        column.set_constraint(ColumnConstraint::LowerBoundary(Width::Fixed(width)));
     }
 }
 

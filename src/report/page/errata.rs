@@ -2,7 +2,7 @@
 //!
 //! After this file the reader knows what is wrong in a paper as printed, why, and which test shows it.
 
-use crate::book::markup::formula;
+use super::markup::formula;
 use crate::book::{Entry, entries_of};
 use crate::paper::Paper;
 use crate::paper::specification::Erratum;

@@ -11,20 +11,23 @@
 //! | `figures`      | which figures a paper has, and what is to be seen on each             |
 //! | `ledger`       | its claims with verdict and evidence                                  |
 //! | `errata`       | the printed and the corrected form of what is wrong                   |
+//! | `book`         | the equations of a paper, one by one, and the index between numbers and code |
+//! | `markup`       | LaTeX and doc comments as HTML                                        |
 //! | `table`        | a table that can be scrolled and read aloud                           |
 //! | `style.css`    | how it looks                                                          |
 
+pub mod book;
 pub mod content;
 mod errata;
 mod figures;
 mod introduction;
 mod ledger;
+pub mod markup;
 mod paper;
 mod table;
 
 use super::chart::NotDrawn;
 use super::palette::{self, hexadecimal};
-use crate::book;
 use crate::paper::Paper;
 use content::Content;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -91,8 +94,8 @@ fn equations() -> Markup {
                 "Every equation with its derivation, the code that realises it, the tests that hold it, and the mistakes that are made in it "
                 "with the cases that catch them. Code that realises several equations stands with the first."
             }
-            details { summary { "All equations, by number and by code" } (book::html::index()) }
-            @for paper in Paper::ALL { (book::html::chapter(paper)) }
+            details { summary { "All equations, by number and by code" } (book::index()) }
+            @for paper in Paper::ALL { (book::chapter(paper)) }
         }
     }
 }

@@ -5,11 +5,12 @@
 //!
 //! An item that realises several equations of a paper stands in the section of the first; the others lead there.
 
-use super::doc::PartKind;
 use super::markup::{formula, paragraphs, sentence, table};
-use super::{Entry, Realisation, entries, entries_of, realisations};
+use crate::book::doc::PartKind;
+use crate::book::{Entry, Realisation, entries, entries_of, realisations};
 use crate::paper::Paper;
 use crate::paper::specification::Erratum;
+use crate::report::equation::status;
 use maud::{Markup, html};
 
 /// The equations of a paper.
@@ -41,15 +42,6 @@ fn section(entry: &Entry) -> Markup {
             (held(entry))
             (caught(entry))
         }
-    }
-}
-
-/// The status in words.
-pub fn status(status: &str) -> &'static str {
-    match status {
-        "as-printed" => "The paper prints this form.",
-        "corrected" => "Corrected: the paper prints another form.",
-        _ => "Reconstructed: the paper needs it and does not print it, or the available copy has lost it.",
     }
 }
 
