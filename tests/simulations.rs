@@ -9,14 +9,17 @@
 
 use immaculate::imm::printed::cubature_with_likelihood_21;
 use immaculate::model::{Conversion, Measurement, PolarComponent};
-use immaculate::paper::comparison::{Average, Quantity};
+use immaculate::paper::comparison::Quantity;
+use immaculate::paper::derbez2000::contestants::Coordinates;
 use immaculate::paper::derbez2000::contestants::Noise as Variance;
 use immaculate::paper::derbez2000::path::{Motion as Leg, Place};
-use immaculate::paper::derbez2000::scenario::{Coordinates, follow, track as track_coordinates};
+use immaculate::paper::derbez2000::scenario::{follow, track as track_coordinates};
 use immaculate::paper::derbez2000::{self, contestants::Reading, radar};
-use immaculate::paper::monte_carlo::{Generator, track};
+use immaculate::paper::monte_carlo::Generator;
 use immaculate::paper::result::Figure;
+use immaculate::paper::scenario::track;
 use immaculate::paper::scenario::{Contestant, Motion, Scenario};
+use immaculate::paper::simulation::Average;
 use immaculate::paper::simulation::Simulation;
 use immaculate::paper::specification::Choices;
 use immaculate::paper::sustika2015::contestants::{Bearings, ConvertedAt, InitialCovariance, Mixing};
@@ -1200,7 +1203,8 @@ fn initial(scenario: &Scenario) -> [f64; 4] {
 }
 
 fn noises(scenario: &derbez2000::scenario::Scenario) -> Vec<[f64; 2]> {
-    let of = |c: &derbez2000::scenario::Contestant| c.problems.each_ref().map(|problem| problem.measurement_noise[0]);
+    let of =
+        |c: &derbez2000::contestants::Contestant| c.problems.each_ref().map(|problem| problem.measurement_noise[0]);
     scenario.contestants.iter().map(of).collect()
 }
 

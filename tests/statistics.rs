@@ -10,10 +10,12 @@
 use immaculate::gaussian::Gaussian;
 use immaculate::imm::{Failure, Step, cycle::Cause};
 use immaculate::paper::Paper;
-use immaculate::paper::comparison::{Average, Comparison, Quantity};
-use immaculate::paper::monte_carlo::{Generator, Run, run};
+use immaculate::paper::comparison::{Comparison, Quantity};
+use immaculate::paper::monte_carlo::{Generator, run};
 use immaculate::paper::result::{Figure, Reproduction};
 use immaculate::paper::scenario::Scenario;
+use immaculate::paper::simulation::Average;
+use immaculate::paper::simulation::Run;
 use immaculate::paper::simulation::{Filter, Path, Simulation};
 use immaculate::paper::specification::Choices;
 use immaculate::statistics::Estimate;

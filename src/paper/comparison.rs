@@ -6,8 +6,7 @@
 //!
 //! A run in which a step could not be computed is left out of the figures of that filter.
 
-use super::monte_carlo::Run;
-use super::simulation::Simulation;
+use super::simulation::{Average, Run, Simulation};
 use crate::statistics::delay::detection_delays;
 use crate::statistics::estimate::{Estimate, mean, paired_difference, root_mean_square};
 use crate::statistics::rmse;
@@ -67,15 +66,6 @@ impl Quantity {
             Self::Velocity => "velocity (m/s)",
         }
     }
-}
-
-/// How errors at single steps become one figure.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Average {
-    /// The root of the mean square over steps, liu2017 (34).
-    RootMeanSquare,
-    /// The mean of RMSE(k) over steps.
-    Mean,
 }
 
 /// The raw runs of a scenario, `[run][contestant]`.

@@ -5,8 +5,9 @@
 
 use super::Effort;
 use super::comparison::Comparison;
-use super::monte_carlo::{Progress, Run, run};
+use super::monte_carlo::{Progress, run};
 use super::scenario::Scenario;
+use super::simulation::Run;
 use super::simulation::Simulation;
 use crate::statistics::estimate::figure;
 use std::fmt::Write;

@@ -4,16 +4,14 @@
 //! ChaCha with eight rounds, keyed by the seed; a run's numbers depend on the seed and the run alone. Gaussian numbers are made by
 //! the Box-Muller transform with the portable functions of [`Real`], so that every platform draws the same.
 
-use super::scenario::{Contestant, Draw};
-use super::simulation::Simulation;
-use crate::imm::{Failure, Imm, Initial, Step};
+use super::simulation::{Run, Simulation};
+use crate::imm::{Imm, Step};
 use crate::number::Real;
-use crate::statistics::consistency::{nees, nis};
-use nalgebra::{SVector, Vector4};
+use nalgebra::SVector;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use rayon::prelude::*;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// A stream of random numbers.
 #[derive(Debug, Clone)]
@@ -64,40 +62,6 @@ impl Generator {
 /// Called once for each finished run of the scenario.
 pub type Progress<'a> = &'a (dyn Fn() + Sync);
 
-/// What one contestant did in one run.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Run {
-    /// Estimate minus truth, one a step; as many as were computed.
-    pub errors: Vec<Vector4<f64>>,
-    /// Normalised estimation errors squared.
-    pub nees: Vec<f64>,
-    /// Normalised innovations squared.
-    pub nis: Vec<f64>,
-    /// Mode probabilities.
-    pub mode_probabilities: Vec<Vec<f64>>,
-    /// The percentage fit error of the position, where the paper has one and the run came to its end.
-    pub fit_error: Option<f64>,
-    /// The step that could not be computed, if there was one.
-    pub failure: Option<Failure>,
-    /// Time spent in the filter's steps.
-    pub time: Duration,
-}
-
-impl Run {
-    /// A run that has not begun, with room for so many steps.
-    pub fn with_room_for(steps: usize) -> Self {
-        Self {
-            errors: Vec::with_capacity(steps),
-            nees: Vec::with_capacity(steps),
-            nis: Vec::with_capacity(steps),
-            mode_probabilities: Vec::with_capacity(steps),
-            fit_error: None,
-            failure: None,
-            time: Duration::ZERO,
-        }
-    }
-}
-
 /// Runs a simulation; the result is `[run][filter]`.
 pub fn run(simulation: &dyn Simulation, runs: usize, seed: u64, progress: Progress) -> Vec<Vec<Run>> {
     (0..runs)
@@ -108,23 +72,6 @@ pub fn run(simulation: &dyn Simulation, runs: usize, seed: u64, progress: Progre
             results
         })
         .collect()
-}
-
-/// One contestant on one draw, to its end or to the first step that cannot be computed.
-///
-/// # Panics
-///
-/// When the contestant's problem is not valid: the papers' problems are part of the program, and a test runs all of them.
-pub fn track(contestant: &Contestant, draw: &Draw) -> Run {
-    let mut run = Run::with_room_for(draw.truth.len());
-    let initial = Initial {
-        modes: vec![draw.initial.clone(); contestant.problem.modes.len()],
-        mode_probabilities: contestant.initial_probabilities.clone(),
-    };
-    let mut filter = Imm::new(contestant.problem.clone(), contestant.equations, &initial)
-        .expect("the scenarios' problems are part of the program");
-    follow(&mut run, &mut filter, &draw.truth, &draw.measurements, record);
-    run
 }
 
 /// A filter along the measurements of a run, to their end or to the first step that cannot be computed; `record` keeps what is needed of a
@@ -148,12 +95,4 @@ pub fn follow<const N: usize, const M: usize>(
             }
         }
     }
-}
-
-/// Keeps what the statistics need of a step.
-fn record(run: &mut Run, step: &Step<f64, 4, 2>, truth: &Vector4<f64>) {
-    run.errors.push(step.combined.mean - truth);
-    run.nees.push(nees(&step.combined, truth));
-    run.nis.extend(nis(step));
-    run.mode_probabilities.push(step.mode_probabilities.clone());
 }

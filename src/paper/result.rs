@@ -6,7 +6,7 @@
 //! A run in which a step could not be computed is counted and named, and is left out of the error figures of that filter.
 
 use super::comparison::{Comparison, Quantity};
-use super::monte_carlo::Run;
+use super::simulation::Run;
 use super::simulation::{Path, Simulation};
 use super::specification::Choices;
 use crate::statistics::consistency::bounds;

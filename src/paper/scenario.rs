@@ -3,15 +3,15 @@
 //! After this file the reader knows everything that the simulations of zhu2016 and liu2017 have in common: a schedule of motions, a draw
 //! of one run's truth, measurements and initial estimate, and contestants that all see the same draw.
 
-use super::comparison::Average;
-use super::monte_carlo::{Generator, Run, track};
-use super::simulation::{Filter, Path, Simulation};
+use super::monte_carlo::{Generator, follow};
+use super::simulation::{Average, Filter, Path, Run, Simulation};
 use super::specification::Choices;
 use crate::gaussian::Gaussian;
-use crate::imm::{Equations, Problem};
+use crate::imm::{Equations, Imm, Initial, Problem, Step};
 use crate::model::motion::{constant_velocity, coordinated_turn};
 use crate::model::{Conversion, Measurement};
 use crate::rule::{Rule, RuleName};
+use crate::statistics::consistency::{nees, nis};
 use nalgebra::{Matrix4, Vector2, Vector4};
 
 /// What the target does in a step.
@@ -256,4 +256,29 @@ impl Simulation for Scenario {
             sensor,
         })
     }
+}
+
+/// One contestant on one draw, to its end or to the first step that cannot be computed.
+///
+/// # Panics
+///
+/// When the contestant's problem is not valid: the papers' problems are part of the program, and a test runs all of them.
+pub fn track(contestant: &Contestant, draw: &Draw) -> Run {
+    let mut run = Run::with_room_for(draw.truth.len());
+    let initial = Initial {
+        modes: vec![draw.initial.clone(); contestant.problem.modes.len()],
+        mode_probabilities: contestant.initial_probabilities.clone(),
+    };
+    let mut filter = Imm::new(contestant.problem.clone(), contestant.equations, &initial)
+        .expect("the scenarios' problems are part of the program");
+    follow(&mut run, &mut filter, &draw.truth, &draw.measurements, record);
+    run
+}
+
+/// Keeps what the statistics need of a step.
+fn record(run: &mut Run, step: &Step<f64, 4, 2>, truth: &Vector4<f64>) {
+    run.errors.push(step.combined.mean - truth);
+    run.nees.push(nees(&step.combined, truth));
+    run.nis.extend(nis(step));
+    run.mode_probabilities.push(step.mode_probabilities.clone());
 }

@@ -1,14 +1,14 @@
 //! What can be run, and what the statistics ask about it.
 //!
 //! After this file the reader knows how little the comparison of filters needs of a paper's scenario: names and times, what the target
-//! does when, and a run whose result depends on its number and the seed alone. [`Scenario`](super::scenario::Scenario) is the one that
-//! two papers share; a paper that is unlike them brings its own.
+//! does when, and a run whose result depends on its number and the seed alone. Two papers share one scenario; a paper that
+//! is unlike them brings its own.
 
-use super::comparison::Average;
-use super::monte_carlo::Run;
 use super::specification::Choices;
-use nalgebra::Vector2;
+use crate::imm::Failure;
+use nalgebra::{Vector2, Vector4};
 use std::fmt::Debug;
+use std::time::Duration;
 
 /// A filter of a simulation, by what is printed about it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -30,6 +30,49 @@ pub struct Path {
     pub measured: Vec<Vector2<f64>>,
     /// Where the sensor is, if positions are not measured themselves.
     pub sensor: Option<[f64; 2]>,
+}
+
+/// How errors at single steps become one figure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Average {
+    /// The root of the mean square over steps, liu2017 (34).
+    RootMeanSquare,
+    /// The mean of RMSE(k) over steps.
+    Mean,
+}
+
+/// What one contestant did in one run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Run {
+    /// Estimate minus truth, one a step; as many as were computed.
+    pub errors: Vec<Vector4<f64>>,
+    /// Normalised estimation errors squared.
+    pub nees: Vec<f64>,
+    /// Normalised innovations squared.
+    pub nis: Vec<f64>,
+    /// Mode probabilities.
+    pub mode_probabilities: Vec<Vec<f64>>,
+    /// The percentage fit error of the position, where the paper has one and the run came to its end.
+    pub fit_error: Option<f64>,
+    /// The step that could not be computed, if there was one.
+    pub failure: Option<Failure>,
+    /// Time spent in the filter's steps.
+    pub time: Duration,
+}
+
+impl Run {
+    /// A run that has not begun, with room for so many steps.
+    pub fn with_room_for(steps: usize) -> Self {
+        Self {
+            errors: Vec::with_capacity(steps),
+            nees: Vec::with_capacity(steps),
+            nis: Vec::with_capacity(steps),
+            mode_probabilities: Vec::with_capacity(steps),
+            fit_error: None,
+            failure: None,
+            time: Duration::ZERO,
+        }
+    }
 }
 
 /// A paper's simulation with every choice made.

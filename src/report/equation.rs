@@ -16,7 +16,6 @@ pub fn table_of(entries: &[&Entry]) -> String {
     for column in table.column_iter_mut() {
         column.set_cell_alignment(CellAlignment::Left);
     }
-    never_broken(&mut table, 0);
     for entry in entries {
         let code: Vec<&str> = entry.realisations.iter().map(|one| one.item.name.as_str()).collect();
         table.add_row(vec![
@@ -26,7 +25,9 @@ pub fn table_of(entries: &[&Entry]) -> String {
             code.join(", "),
         ]);
     }
-    words_whole(&mut table, 3);
+    for column in [0, 1, 3] {
+        words_whole(&mut table, column);
+    }
     let next = "`immaculate equation zhu2016 56` shows one in full; so do the name of a value and of a function";
     format!("{table}\n{} equations; {next}\n", entries.len())
 }

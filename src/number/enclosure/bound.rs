@@ -11,7 +11,10 @@ use std::cmp::Ordering;
 /// The bits of a mantissa.
 const BITS: i64 = 30;
 
-/// The least exponent of a bound, far below everything that a ball can hold; see [`super::arithmetic::EXPONENTS`].
+/// What stands for the position of the leading bit of zero: below that of every other number, and far from overflow.
+pub(super) const TOP_OF_ZERO: i64 = -(1 << 60);
+
+/// The least exponent of a bound, far below everything that a ball can hold; see `EXPONENTS` of arithmetic.
 const LEAST_EXPONENT: i64 = -(1 << 53);
 
 /// A number m · 2ᵉ ≥ 0 that is a bound of another one.
@@ -96,7 +99,7 @@ impl Bound {
     /// The least t with the bound below 2ᵗ; below every other one for zero.
     pub(super) fn top(self) -> i64 {
         if self.is_zero() {
-            super::dyadic::TOP_OF_ZERO
+            TOP_OF_ZERO
         } else {
             self.exponent + BITS
         }

@@ -3,16 +3,13 @@
 //! After this file the reader knows how such numbers are compared and turned into doubles and decimals exactly, and why an exponent of
 //! 2⁵⁰ does not ask for 2⁵⁰ bits.
 
-use super::bound::Bound;
+use super::bound::{Bound, TOP_OF_ZERO};
 use crate::number::Rational;
 use num_bigint::{BigInt, BigUint};
 use num_integer::Integer;
 use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive, Zero};
 use std::cmp::Ordering;
-
-/// What stands for the position of the leading bit of zero: below that of every other number, and far from overflow.
-pub(super) const TOP_OF_ZERO: i64 = -(1 << 60);
 
 /// Beyond 2 to this power, up or down, a number is not written out as a fraction or a decimal: it would fill megabytes.
 const LARGEST_WRITTEN_EXPONENT: i64 = 1 << 24;

@@ -5,10 +5,10 @@
 //! [`arithmetic`].
 
 use super::arithmetic::published;
-use super::contestants::Reading;
+use super::contestants::{Contestant, Coordinates, Reading};
 use super::path::{Motion, Place};
 use super::relative::{Relative, Tally, extremes, relative};
-use super::scenario::{Contestant, Coordinates, Scenario, Steps, follow};
+use super::scenario::{Scenario, Steps, follow};
 use super::{CLOSEST_POINT, arithmetic, long_term, scenario, search, stability};
 use crate::imm::Equations;
 use crate::paper::comparison::Quantity;
@@ -245,7 +245,7 @@ fn delays(runs: &Runs, contestant: usize) -> Vec<f64> {
             .map(|(delay, length)| delay.unwrap_or(length) as f64)
             .collect()
     };
-    let of_run = |run: &Vec<crate::paper::monte_carlo::Run>| {
+    let of_run = |run: &Vec<crate::paper::simulation::Run>| {
         let probabilities = &run[contestant].mode_probabilities;
         let lane = |c: usize| {
             probabilities

@@ -132,3 +132,8 @@ fn turn([x, y]: Place, turn_rate: f64, interval: f64) -> Place {
         Vector3::new(turned[2], turned[3], turn_rate * turned[1]),
     ]
 }
+
+/// The position of both coordinates.
+pub fn position_of(place: &Place) -> Vector2<f64> {
+    Vector2::new(place[0][0], place[1][0])
+}

@@ -4,48 +4,19 @@
 //! its own, and the two know nothing of each other. What a run keeps of them is in the form of the other papers, errors of
 //! [x, ẋ, y, ẏ], so that the same statistics apply; the error of the acceleration is left out.
 
-use super::contestants::Setup;
-use super::path::{Motion, Path, Place};
+use super::contestants::{Contestant, Coordinates, Setup};
+use super::path::{Motion, Path, Place, position_of};
 use super::radar;
-use crate::imm::{Equations, Failure, Imm, Initial, Problem, Step};
+use crate::imm::{Failure, Imm, Initial, Problem, Step};
 use crate::model::Conversion;
-use crate::model::conversion::converted_position;
-use crate::number::Real;
-use crate::paper::comparison::Average;
-use crate::paper::monte_carlo::{Generator, Run};
+use crate::paper::monte_carlo::Generator;
+use crate::paper::simulation::Average;
+use crate::paper::simulation::Run;
 use crate::paper::simulation::{self, Filter, Simulation};
 use crate::paper::specification::Choices;
 use crate::statistics::consistency::{nees, nis};
 use nalgebra::{Matrix1, Vector1, Vector2, Vector3, Vector4};
 use std::time::{Duration, Instant};
-
-/// What a filter of the comparison filters.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Coordinates {
-    /// x and y of the converted measurements.
-    Cartesian,
-    /// Range and bearing themselves; only the output is converted.
-    Polar,
-}
-
-/// A filter of the comparison: two filters of one coordinate each.
-#[derive(Debug, Clone)]
-pub struct Contestant {
-    /// The paper's name for it.
-    pub name: String,
-    /// What it filters.
-    pub coordinates: Coordinates,
-    /// Modes, chain and noises for either coordinate.
-    pub problems: [Problem<f64, 3, 1>; 2],
-    /// Its equations.
-    pub equations: Equations<f64, 3, 1>,
-    /// Mode probabilities at step 0.
-    pub initial_probabilities: Vec<f64>,
-    /// The variance of every coordinate's entries of the state at step 0; zero where there are no covariances.
-    pub initial_variance: f64,
-    /// Whether R is that of each converted measurement; if not, it is the problem's at all steps.
-    pub follows_noise: bool,
-}
 
 /// A scenario with every choice made.
 #[derive(Debug, Clone)]
@@ -100,11 +71,6 @@ impl Scenario {
         let moves = |(motion, place): (&Motion, &Place)| *motion != Motion::Straight && place[coordinate][2] != 0.0;
         self.path.motions.iter().zip(&self.path.places).map(moves).collect()
     }
-}
-
-/// The position of both coordinates.
-fn position_of(place: &Place) -> Vector2<f64> {
-    Vector2::new(place[0][0], place[1][0])
 }
 
 impl Simulation for Scenario {
@@ -306,62 +272,4 @@ fn record(run: &mut Run, contestant: &Contestant, steps: Steps, place: &Place) {
         usize::MAX
     };
     run.mode_probabilities.push(probabilities.take(shown).collect());
-}
-
-impl Coordinates {
-    /// A place in these coordinates, [r, ṙ, r̈] and [θ, θ̇, θ̈] for polar ones.
-    ///
-    /// ```text
-    /// ṙ = (x ẋ + y ẏ)/r,   r θ̇ = (x ẏ − y ẋ)/r,   r̈ = (x ẍ + y ÿ)/r + r θ̇²,   r θ̈ = (x ÿ − y ẍ)/r − 2 ṙ θ̇
-    /// ```
-    ///
-    /// Source: the accelerations along and across the line of sight, r̈ − r θ̇² and r θ̈ + 2 ṙ θ̇.
-    ///
-    /// Example: at (2, 0) with the velocity (0, 4) and no acceleration: θ̇ = 4/2, r̈ = 2 · 2² = 8, and nothing else.
-    ///
-    /// ```
-    /// use immaculate::paper::derbez2000::scenario::Coordinates;
-    /// use nalgebra::Vector3;
-    ///
-    /// let place = [Vector3::new(2.0, 0.0, 0.0), Vector3::new(0.0, 4.0, 0.0)];
-    /// let [range, bearing] = Coordinates::Polar.of(&place);
-    /// assert_eq!(range, Vector3::new(2.0, 0.0, 8.0));
-    /// assert_eq!(bearing, Vector3::new(0.0, 2.0, 0.0));
-    /// ```
-    ///
-    /// Evidence: `range_and_bearing_move_as_their_derivatives_say`.
-    pub fn of(self, place: &Place) -> Place {
-        if self == Self::Cartesian {
-            return *place;
-        }
-        let [x, y] = place;
-        let polar = radar::polar(position_of(place));
-        let r = polar[0];
-        let along = |i: usize| (x[0] * x[i] + y[0] * y[i]) / r;
-        let across = |i: usize| (x[0] * y[i] - y[0] * x[i]) / r;
-        let (range_rate, bearing_rate) = (along(1), across(1) / r);
-        [
-            Vector3::new(r, range_rate, along(2) + r * bearing_rate * bearing_rate),
-            Vector3::new(
-                polar[1],
-                bearing_rate,
-                (across(2) - 2.0 * range_rate * bearing_rate) / r,
-            ),
-        ]
-    }
-
-    /// Position and velocity [x, ẋ, y, ẏ] of estimates in these coordinates.
-    fn back(self, [first, second]: Place) -> Vector4<f64> {
-        if self == Self::Cartesian {
-            return Vector4::new(first[0], first[1], second[0], second[1]);
-        }
-        let direction = converted_position(&1.0, &Real::cos(&second[0]), &Real::sin(&second[0]));
-        let (r, range_rate, across) = (first[0], first[1], first[0] * second[1]);
-        Vector4::new(
-            r * direction[0],
-            range_rate * direction[0] - across * direction[1],
-            r * direction[1],
-            range_rate * direction[1] + across * direction[0],
-        )
-    }
 }

@@ -38,8 +38,9 @@
 pub mod arithmetic;
 pub mod claims;
 
-use super::comparison::{Average, Quantity};
+use super::comparison::Quantity;
 use super::scenario::{Contestant, Motion, Scenario};
+use super::simulation::Average;
 use super::specification::{Choices, InvalidChoice, liu2017 as specification};
 use crate::imm::printed::cubature_with_likelihood_21;
 use crate::imm::{Equations, Problem};

@@ -39,8 +39,9 @@ pub mod arithmetic;
 pub mod claims;
 pub mod diagonal_mixing;
 
-use super::comparison::{Average, Quantity};
+use super::comparison::Quantity;
 use super::scenario::{Contestant, Motion, Scenario};
+use super::simulation::Average;
 use super::specification::{Choices, InvalidChoice, zhu2016 as specification};
 use crate::imm::{Equations, Problem};
 use crate::model::motion::{Mode, acceleration_input, acceleration_noise};
