@@ -1,10 +1,12 @@
-//! Files: read within a bound, and written whole or not at all.
+//! Files: read within a bound, written whole or not at all, told apart by a digest, and quoted in short.
 //!
 //! After this file the reader knows what the program promises of every file that it reads or writes, whatever happens meanwhile. What is
 //! read has a greatest length, so that no file and no pipe without an end fills the memory. What is written stands in a temporary file
 //! beside its place until all of it is on the disk, and takes its place in one step, so that whoever looks finds the old file or the new
 //! one, and after an interruption, too.
 
+use sha2::{Digest, Sha256};
+use std::fmt::Write as _;
 use std::fs::{self, File};
 use std::io::{self, BufRead, ErrorKind, Read, Write};
 use std::path::Path;
@@ -108,4 +110,32 @@ fn write_new(path: &Path, content: &str, permissions: Option<fs::Permissions>) -
         file.set_permissions(permissions)?;
     }
     file.sync_all()
+}
+
+/// The SHA-256 digest of a text, in hexadecimal digits.
+///
+/// Example: the digest of nothing, as FIPS 180 has it.
+///
+/// ```
+/// use immaculate::file::digest;
+///
+/// assert!(digest("").starts_with("e3b0c442"));
+/// ```
+pub fn digest(text: &str) -> String {
+    let mut digits = String::new();
+    for byte in Sha256::digest(text.as_bytes()) {
+        // Writing to a string cannot fail.
+        let _ = write!(digits, "{byte:02x}");
+    }
+    digits
+}
+
+/// A text of at most so many characters: of a longer one its beginning and its end, between which an ellipsis stands.
+pub fn shortened(text: &str, kept: usize) -> String {
+    if text.chars().nth(kept).is_none() {
+        return text.to_owned();
+    }
+    let start = text.char_indices().nth(kept / 2).map_or(0, |(place, _)| place);
+    let end = text.char_indices().rev().nth(kept / 2).map_or(0, |(place, _)| place);
+    format!("{}…{}", &text[..start], &text[end..])
 }

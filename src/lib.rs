@@ -161,22 +161,33 @@
 //!
 //! Every command explains itself with `--help`.
 
-pub mod book;
-pub mod file;
 pub mod filter;
 pub mod gaussian;
 pub mod imm;
 pub mod matrix;
 pub mod model;
 pub mod number;
-pub mod oracle;
-pub mod paper;
-pub mod report;
 pub mod rule;
+
+#[cfg(any(feature = "oracle", feature = "paper"))]
+pub mod file;
+
+#[cfg(feature = "oracle")]
+pub mod oracle;
+
+#[cfg(feature = "paper")]
+pub mod paper;
+#[cfg(feature = "paper")]
 pub mod statistics;
+#[cfg(feature = "paper")]
 pub mod steady;
 
+#[cfg(feature = "cli")]
+pub mod book;
+#[cfg(feature = "cli")]
+pub mod report;
+
 /// The README's example is run with the others.
-#[cfg(doctest)]
+#[cfg(all(doctest, feature = "cli"))]
 #[doc = include_str!("../README.md")]
 struct Readme;

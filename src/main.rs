@@ -8,7 +8,7 @@ mod cli;
 use clap::{Parser, Subcommand};
 pub use cli::Refusal;
 use cli::{Done, print};
-use immaculate::oracle::invalid::shortened;
+use immaculate::file::shortened;
 use std::io::Write;
 use std::process::ExitCode;
 

@@ -7,6 +7,7 @@
 
 mod published;
 
+use immaculate::file::digest;
 use immaculate::imm::Quantity;
 use immaculate::number::Real;
 use immaculate::oracle::case::{self, Case, Expected};
@@ -396,7 +397,7 @@ fn a_published_case_is_not_written_again() {
         .position(|case| case["id"] == "update.kalman")
         .unwrap();
     let mut changed = lock.clone();
-    let digest = case::digest("another problem");
+    let digest = digest("another problem");
     changed["cases"][place]["problem"] = json!(digest);
     let mut withdrawn = lock.clone();
     withdrawn["cases"][place]["withdrawn"] = json!("its purpose was another case's");

@@ -5,8 +5,8 @@
 //! again; and the plain user's unit test on Immaculate's own doubles. Kind of evidence: oracle, with examples good and bad, and no
 //! tolerance but the cases' own.
 
+use immaculate::file::digest;
 use immaculate::oracle::case::{self, BadCase, Case, Expected, LOCK, Lock};
-use immaculate::oracle::certificate::CertificateFile;
 use immaculate::oracle::certify::{certified_decimals, certify, long_csv};
 use immaculate::oracle::csv;
 use immaculate::oracle::invalid::{Class, Invalid};
@@ -14,6 +14,7 @@ use immaculate::oracle::problem::ProblemFile;
 use immaculate::oracle::schema;
 use immaculate::oracle::subject::{Answer, Level, Planted, Subject};
 use immaculate::oracle::trace::{Dimensions, Trace, read_json};
+use immaculate::steady::certificate_file::CertificateFile;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
@@ -853,7 +854,7 @@ fn the_published_schemas_are_those_of_the_code() {
     for (name, schema) in [
         ("problem", schema::of_problems()),
         ("trace", schema::of_traces()),
-        ("certificate", schema::of_certificates()),
+        ("certificate", immaculate::steady::certificate_file::schema()),
     ] {
         let path = root().join(format!("spec/schemas/{name}.schema.json"));
         let published = std::fs::read_to_string(&path).unwrap_or_default();
@@ -909,7 +910,7 @@ fn the_schemas_take_what_is_published_and_refuse_what_is_spoilt() {
 /// or not known, a value of another kind, a letter that names no filter, a form that is not 3 × 3, and more than a certificate may have.
 #[test]
 fn the_schema_of_certificates_refuses_what_the_reader_refuses() {
-    let schema = schema::of_certificates();
+    let schema = immaculate::steady::certificate_file::schema();
     let is_taken = |value: &Value| against_schema(value, &schema, &schema, "certificate").is_ok();
     let is_read = |value: &Value| {
         CertificateFile::read(&with_digest(value))
@@ -978,7 +979,7 @@ fn certificates() -> Vec<Value> {
 fn with_digest(value: &Value) -> String {
     let mut value = value.clone();
     if value["digest"].is_string() {
-        value["digest"] = json!(case::digest(&format!("{}{}", value["filters"], value["proof"])));
+        value["digest"] = json!(digest(&format!("{}{}", value["filters"], value["proof"])));
     }
     value.to_string()
 }
@@ -1388,12 +1389,12 @@ fn the_lock_holds_every_file_of_the_folder_and_nothing_else() {
     for locked in &lock.cases {
         assert!(ids.insert(&locked.id), "{} twice", locked.id);
         expected.extend([case::problem_name(&locked.id), case::trace_name(&locked.id)]);
-        for (name, digest) in [
+        for (name, expected) in [
             (case::problem_name(&locked.id), &locked.problem),
             (case::trace_name(&locked.id), &locked.trace),
         ] {
             let text = std::fs::read_to_string(folder().join(&name)).unwrap();
-            assert_eq!(&case::digest(&text), digest, "{name}");
+            assert_eq!(&digest(&text), expected, "{name}");
         }
     }
     let entries = std::fs::read_dir(folder()).unwrap();
@@ -1402,8 +1403,8 @@ fn the_lock_holds_every_file_of_the_folder_and_nothing_else() {
         .collect();
     assert_eq!(found, expected);
     // SHA-256 of nothing and of three letters, from the standard (FIPS 180-4, examples).
-    assert!(case::digest("").starts_with("e3b0c44298fc1c149afbf4c8996fb924"));
-    assert!(case::digest("abc").starts_with("ba7816bf8f01cfea414140de5dae2223"));
+    assert!(digest("").starts_with("e3b0c44298fc1c149afbf4c8996fb924"));
+    assert!(digest("abc").starts_with("ba7816bf8f01cfea414140de5dae2223"));
     let other = serde_json::to_string(&json!({ "format": "immaculate-lock/2", "cases": [] })).unwrap();
     assert!(Lock::read(&other).unwrap_err().contains("immaculate-lock/2"));
 }

@@ -11,11 +11,10 @@
 mod program;
 
 use clap::Parser;
-use immaculate::file;
+use immaculate::file::{self, digest};
 use immaculate::imm::Quantity;
 use immaculate::oracle::answer::respond;
 use immaculate::oracle::case::{self, Lock};
-use immaculate::oracle::certificate::CertificateFile;
 use immaculate::oracle::csv;
 use immaculate::oracle::problem::ProblemFile;
 use immaculate::oracle::process::read_answer;
@@ -24,6 +23,7 @@ use immaculate::oracle::subject::{Level, Planted, Ready};
 use immaculate::oracle::trace::{Dimensions, Trace, read_json};
 use immaculate::paper::Paper;
 use immaculate::paper::specification::Choices;
+use immaculate::steady::certificate_file::CertificateFile;
 use immaculate::steady::verdict::{Depth, Verdict};
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
@@ -454,7 +454,7 @@ fn with_digest(text: &str) -> String {
         return text.to_owned();
     };
     let empty = json!({});
-    let digest = case::digest(&format!(
+    let digest = digest(&format!(
         "{}{}",
         tree.get("filters").unwrap_or(&empty),
         tree.get("proof").unwrap_or(&empty)

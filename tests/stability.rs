@@ -15,12 +15,12 @@ use immaculate::model::acceleration::{
 };
 use immaculate::model::{Measurement, motion::Mode};
 use immaculate::number::{Enclosure, Field, Rational, RationalFunction, Real};
-use immaculate::oracle::certificate::{
-    CertificateFile, FiltersFile, InvalidCertificate, Noises, ProofFile, read_number,
-};
 use immaculate::paper::derbez2000::instances;
 use immaculate::paper::monte_carlo::Generator;
 use immaculate::steady::certificate::{Edge, NotProven, Product, Quadratics};
+use immaculate::steady::certificate_file::{
+    CertificateFile, FiltersFile, InvalidCertificate, Noises, ProofFile, read_number,
+};
 use immaculate::steady::gains;
 use immaculate::steady::linear::{solve, stein};
 use immaculate::steady::map::Map;

@@ -81,7 +81,7 @@ pub fn run(arguments: &Cases) -> Result<Done, Refusal> {
         Action::Schema { of: Format::Trace } => Ok(json_text(&schema::of_traces()).into()),
         Action::Schema {
             of: Format::Certificate,
-        } => Ok(json_text(&schema::of_certificates()).into()),
+        } => Ok(json_text(&immaculate::steady::certificate_file::schema()).into()),
     }
 }
 

@@ -6,8 +6,8 @@
 use super::progress::bar;
 use super::{Done, Refusal, json_text, make_directory, read_file, write_file};
 use clap::Args;
-use immaculate::oracle::certificate::{CertificateFile, FiltersFile, Noises};
 use immaculate::report::{stability, stability_map};
+use immaculate::steady::certificate_file::{CertificateFile, FiltersFile, Noises};
 use immaculate::steady::map::Map;
 use immaculate::steady::verdict::Depth;
 use std::path::PathBuf;

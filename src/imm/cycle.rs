@@ -203,7 +203,7 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
     }
 
     /// The last step, to be overwritten by one that was computed elsewhere.
-    pub(crate) fn current_mut(&mut self) -> &mut Step<T, N, M> {
+    pub fn current_mut(&mut self) -> &mut Step<T, N, M> {
         &mut self.now
     }
 

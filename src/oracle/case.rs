@@ -7,11 +7,10 @@ use super::certify::{Certified, NotCertified, certify};
 use super::invalid::{Class, Invalid};
 use super::problem::ProblemFile;
 use super::trace::{FORMAT, Trace};
+use crate::file::digest;
 use include_dir::{Dir, include_dir};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
-use sha2::{Digest, Sha256};
-use std::fmt::Write;
 use std::sync::LazyLock;
 
 /// The folder of the cases, as it was when the program was built.
@@ -53,24 +52,6 @@ pub fn problem_name(id: &str) -> String {
 /// The name of a case's trace file.
 pub fn trace_name(id: &str) -> String {
     format!("{id}.trace.json")
-}
-
-/// The SHA-256 digest of a text, in hexadecimal digits.
-///
-/// Example: the digest of nothing, as FIPS 180 has it.
-///
-/// ```
-/// use immaculate::oracle::case::digest;
-///
-/// assert!(digest("").starts_with("e3b0c442"));
-/// ```
-pub fn digest(text: &str) -> String {
-    let mut digits = String::new();
-    for byte in Sha256::digest(text.as_bytes()) {
-        // Writing to a string cannot fail.
-        let _ = write!(digits, "{byte:02x}");
-    }
-    digits
 }
 
 /// What a case expects.

@@ -4,12 +4,12 @@
 //! is said of a case without a file, and that files are judged as messages are.
 
 use super::csv;
-use super::invalid::shortened;
 use super::problem::ProblemFile;
 use super::process::read_answer;
 use super::subject::{Answer, Broken, Ready, Subject};
 use super::trace::read_json;
 use crate::file;
+use crate::file::shortened;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 

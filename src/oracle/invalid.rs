@@ -2,6 +2,7 @@
 //!
 //! After this file the reader knows the classes by which the refusals of different programs are compared.
 
+use crate::file::shortened;
 use serde::Serialize;
 
 /// The class of a reason, by which the refusals of different programs can be compared.
@@ -80,14 +81,4 @@ impl Invalid {
             reason: shortened(&reason.into(), KEPT),
         }
     }
-}
-
-/// A text of at most so many characters: of a longer one its beginning and its end, between which an ellipsis stands.
-pub fn shortened(text: &str, kept: usize) -> String {
-    if text.chars().nth(kept).is_none() {
-        return text.to_owned();
-    }
-    let start = text.char_indices().nth(kept / 2).map_or(0, |(place, _)| place);
-    let end = text.char_indices().rev().nth(kept / 2).map_or(0, |(place, _)| place);
-    format!("{}…{}", &text[..start], &text[end..])
 }

@@ -20,7 +20,7 @@
 //!
 //! [`certify`] runs the problem on enclosures, with more and more bits, until one double is the nearest to all that each enclosure holds.
 //! Beside each value stand its unit, [`scale`], and how far rounding alone moves it, [`noise`]. [`case`](mod@case) keeps the files and the
-//! lock of their digests: a published case never changes. ([`certificate`] is another thing: proofs of joint stability as files.)
+//! lock of their digests: a published case never changes.
 //!
 //! # How a program is asked
 //!
@@ -55,7 +55,6 @@
 
 pub mod answer;
 pub mod case;
-pub mod certificate;
 pub mod certify;
 pub mod check;
 pub mod csv;

@@ -3,10 +3,10 @@
 //! After this file the reader knows how a program that hangs, ends, floods or answers out of order is noticed. Reading and writing
 //! happen in threads of their own, so that nothing the program does can block the check.
 
-use super::invalid::shortened;
 use super::problem::ProblemFile;
 use super::subject::{Answer, Broken, ECHO, Ready, Subject};
 use super::trace::{Dimensions, Trace, read_json};
+use crate::file::shortened;
 use crate::file::{LONGEST_LINE, read_line};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;

@@ -2,12 +2,10 @@
 //!
 //! After this file the reader knows that the schemas in `spec/schemas/` cannot drift from the code: a test holds them against these.
 
-use super::certificate::{self, CertificateFile};
 use super::invalid::Class;
 use super::problem::{self, ProblemFile};
 use super::trace;
 use crate::imm::Quantity;
-use crate::steady::verdict::LETTERS;
 use serde_json::{Map, Value, json};
 
 /// The schema of problem files.
@@ -36,18 +34,6 @@ fn with_estimates(kinds: &[Value], estimate: &Value) -> Value {
         "filter": { "properties": { "kind": { "enum": kinds } } },
         "initial": { "properties": { "modes": { "items": estimate } } },
     } })
-}
-
-/// The schema of certificates of joint stability.
-pub fn of_certificates() -> Value {
-    let mut schema = json!(schemars::schema_for!(CertificateFile));
-    schema["properties"]["format"]["const"] = json!(certificate::FORMAT);
-    // The type of an edge knows a letter, and not that there are two.
-    let edges = "/$defs/ProofFile/oneOf/0/properties/stable/properties/edges/items/prefixItems/1";
-    if let Some(letter) = schema.pointer_mut(edges) {
-        *letter = json!({ "enum": LETTERS });
-    }
-    schema
 }
 
 /// The schema of certified traces.

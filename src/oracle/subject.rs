@@ -3,13 +3,14 @@
 //! After this file the reader knows the trait by which a filter in Rust is checked from its own tests; a process
 //! ([`super::process`]) and a folder of answers ([`super::folder`]) implement the same.
 
-use super::invalid::{Invalid, shortened};
+use super::invalid::Invalid;
 use super::problem::ProblemFile;
 use super::run::Computed;
 use super::setup::Setup;
 use super::shape::{self, Work};
 use super::trace::{Dimensions, Trace};
 use super::variant;
+use crate::file::shortened;
 use serde_json::Value;
 use std::collections::BTreeMap;
 

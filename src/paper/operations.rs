@@ -71,11 +71,6 @@ impl Sums {
         self.product(m, n, 1) + covariance + self.product(n, n, m)
     }
 
-    /// S = L D Lᵀ, for one or two rows: 0 or 4 operations; and K from it, row by row: two triangular systems and a division by D.
-    fn gain(self, n: usize, m: usize) -> usize {
-        factors(m) + n * (2 * m * (m - 1) + m)
-    }
-
     /// ν, x̂⁻ + K ν.
     fn updated_mean(self, n: usize, m: usize) -> usize {
         m + self.product(n, m, 1) + n
@@ -107,6 +102,11 @@ impl Sums {
         let entries: usize = (0..columns).map(|column| n - column).sum();
         2 * (2 * entries + (n * n - entries) * self.first())
     }
+}
+
+/// S = L D Lᵀ, and K from it, row by row: two triangular systems and a division by D.
+fn gain(n: usize, m: usize) -> usize {
+    factors(m) + n * (2 * m * (m - 1) + m)
 }
 
 /// The factors of S of one or two rows: with two, a quotient, two products and a difference.
@@ -185,7 +185,7 @@ impl OneCoordinate {
         let kalman = prediction
             + sums.predicted_covariance(n)
             + sums.linear_measurement(n, m)
-            + sums.gain(n, m)
+            + gain(n, m)
             + sums.updated_mean(n, m)
             + covariance;
         // The mean of either mode is mixed, and the output is a mixture.
@@ -235,7 +235,7 @@ impl CoastalRadar {
         let (n, m, points) = (6, 2, 13);
         let common = sums.probabilities()
             + 3 * (sums.mixture_mean(n) + sums.mixture_covariance(n))
-            + 2 * (sums.updated_mean(n, m) + sums.gain(n, m) + sums.updated_covariance(n, m) + sums.log_likelihood(m));
+            + 2 * (sums.updated_mean(n, m) + gain(n, m) + sums.updated_covariance(n, m) + sums.log_likelihood(m));
         let linear_prediction = sums.product(n, n, 1) + sums.predicted_covariance(n);
         // h of the points and of their centre: two products, a sum, a root, an arcus tangent. Bearings are averaged about the centre's.
         let measured = 5 * (points + 1);

@@ -5,9 +5,9 @@
 
 use super::{table, wrapped};
 use crate::number::{Enclosure, Field, Rational};
-use crate::oracle::certificate::CertificateFile;
 use crate::statistics::estimate::figure;
 use crate::steady::certificate::{Product, Quadratics};
+use crate::steady::certificate_file::CertificateFile;
 use crate::steady::gains;
 use crate::steady::map::{Map, greatest_frozen_radius};
 use crate::steady::search::spectral_radius;

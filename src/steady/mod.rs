@@ -13,11 +13,13 @@
 //! - [`unrolled`]: the recursion undone;
 //! - [`pair`]: the two filters of derbez2000 and three criteria of their joint stability;
 //! - [`certificate`]: what proves joint stability, or its absence;
+//! - [`certificate_file`]: the same as files, which anyone can check;
 //! - [`search`]: how such proofs are found;
 //! - [`verdict`]: the answer for two filters;
 //! - [`map`]: the answers over a range of noises.
 
 pub mod certificate;
+pub mod certificate_file;
 pub mod gains;
 pub mod linear;
 pub mod long_term;

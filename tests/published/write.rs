@@ -1,7 +1,7 @@
 //! How new cases are certified, written and locked: what is published is never changed, and the lock has new cases last.
 
 use super::{all, rejected};
-use immaculate::file;
+use immaculate::file::{self, digest};
 use immaculate::oracle::case::{self, LOCK, Lock, Locked};
 use immaculate::oracle::certify::certify;
 use immaculate::oracle::problem::ProblemFile;
@@ -42,8 +42,8 @@ pub fn write(folder: &Path) -> Result<usize, String> {
         write_file(&folder.join(case::trace_name(id)), trace)?;
         lock.cases.push(Locked {
             id: id.clone(),
-            problem: case::digest(problem),
-            trace: case::digest(trace),
+            problem: digest(problem),
+            trace: digest(trace),
             withdrawn: None,
         });
     }
@@ -61,7 +61,7 @@ fn check_unchanged(problem: &ProblemFile, lock: &Lock) -> Result<(), String> {
     let Some(locked) = lock.cases.iter().find(|locked| locked.id == problem.id) else {
         return Ok(());
     };
-    if locked.withdrawn.is_none() && locked.problem == case::digest(&case::problem_text(problem)) {
+    if locked.withdrawn.is_none() && locked.problem == digest(&case::problem_text(problem)) {
         return Ok(());
     }
     Err(format!(

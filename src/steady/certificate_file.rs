@@ -4,11 +4,10 @@
 //! roots, or noises and scan time) and the proof; the matrices are computed again from the former, so that a proof of other filters proves
 //! nothing. Every number is a fraction in quotes, "−1.5" and "-3/2" alike.
 
-use super::case::digest;
-use super::invalid::shortened;
+use super::certificate::{Edge, NotProven, Product, Quadratics};
+use super::verdict::{Filters, LETTERS, Verdict, word_text};
+use crate::file::{digest, shortened};
 use crate::number::Rational;
-use crate::steady::certificate::{Edge, NotProven, Product, Quadratics};
-use crate::steady::verdict::{Filters, LETTERS, Verdict, word_text};
 use nalgebra::SMatrix;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -136,7 +135,7 @@ pub enum InvalidCertificate {
 ///
 /// ```
 /// use immaculate::number::Rational;
-/// use immaculate::oracle::certificate::read_number;
+/// use immaculate::steady::certificate_file::read_number;
 ///
 /// assert_eq!(read_number("radius", "-3/2"), read_number("radius", "-1.5"));
 /// assert_eq!(read_number("radius", "6/4"), Ok(Rational::new(3, 2)));
@@ -323,6 +322,18 @@ impl CertificateFile {
             _ => Ok(()),
         }
     }
+}
+
+/// The JSON Schema of these files.
+pub fn schema() -> serde_json::Value {
+    let mut schema = serde_json::json!(schemars::schema_for!(CertificateFile));
+    schema["properties"]["format"]["const"] = serde_json::json!(FORMAT);
+    // The type of an edge knows a letter, and not that there are two.
+    let edges = "/$defs/ProofFile/oneOf/0/properties/stable/properties/edges/items/prefixItems/1";
+    if let Some(letter) = schema.pointer_mut(edges) {
+        *letter = serde_json::json!({ "enum": LETTERS });
+    }
+    schema
 }
 
 fn digest_of(filters: &FiltersFile, proof: &ProofFile) -> String {
