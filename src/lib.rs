@@ -55,25 +55,29 @@
 //!
 //! # The rooms, in reading order
 //!
-//! | room           | what is in it                                                                      | what it needs    |
-//! |----------------|------------------------------------------------------------------------------------|------------------|
-//! | [`number`]     | the number systems in which every equation is evaluated                            | nothing          |
-//! | [`matrix`]     | Cholesky and L D Lᵀ, for every number system                                       | numbers          |
-//! | [`gaussian`]   | moments of a mixture, density of a residual                                        | matrices         |
-//! | [`model`]      | how the target moves, what the sensor sees                                         | numbers          |
-//! | [`rule`]       | cubature rules in exact form, their moments and degrees                            | numbers          |
-//! | [`filter`]     | one filter: Kalman, cubature, converted measurements, fixed gain                   | rules and models |
-//! | [`imm`]        | the cycle: a table of equations and the wiring that runs it                        | filters          |
-//! | [`steady`]     | steady gains, Riccati and Lyapunov equations, joint stability and its certificates | filters          |
-//! | [`statistics`] | errors over runs, their uncertainty, consistency                                   | numbers          |
-//! | [`paper`]      | the papers' simulations, published tables and claims, and their judges             | all above        |
-//! | [`oracle`]     | certified cases, traces, and the judge of other filters                            | the cycle        |
-//! | [`book`]       | every equation with its code, derivation, errata, tests, mistakes and cases        | all above        |
-//! | [`report`]     | what is printed                                                                    | all above        |
-//! | [`mod@file`]   | reading within a bound, writing whole or not at all                                | nothing          |
+//! A room uses those above it and none below. The rooms without a feature are the specification: with `default-features = false` they
+//! are all there is. The oracle and the papers know nothing of each other; feature `cli` includes both, and is the default.
 //!
-//! Arrows run downwards: numbers know nothing, equations know numbers and matrices. Equations, filters and the cycle read no files, draw no
-//! random numbers and print nothing. Whoever wants the filter alone reads [`gaussian`], [`filter`] and [`imm`], in that order.
+//! | room           | what is in it                                                                      | feature           |
+//! |----------------|------------------------------------------------------------------------------------|-------------------|
+//! | [`number`]     | the number systems in which every equation is evaluated                            |                   |
+//! | [`matrix`]     | Cholesky and L D Lᵀ, for every number system                                       |                   |
+//! | [`gaussian`]   | moments of a mixture, density of a residual                                        |                   |
+//! | [`model`]      | how the target moves, what the sensor sees                                         |                   |
+//! | [`rule`]       | cubature rules in exact form, their moments and degrees                            |                   |
+//! | [`filter`]     | one filter: Kalman, cubature, converted measurements, fixed gain                   |                   |
+//! | [`imm`]        | the cycle: a table of equations and the wiring that runs it                        |                   |
+//! | [`mod@file`]   | reading within a bound, writing whole or not at all                                | `oracle`, `paper` |
+//! | [`oracle`]     | certified cases, traces, and the judge of other filters                            | `oracle`          |
+//! | [`steady`]     | steady gains, Riccati and Lyapunov equations, joint stability and its certificates | `paper`           |
+//! | [`statistics`] | errors over runs, their uncertainty, consistency                                   | `paper`           |
+//! | [`paper`]      | the papers' simulations, published tables and claims, and their judges             | `paper`           |
+//! | [`book`]       | every equation with its code, derivation, errata, tests, mistakes and cases        | `cli`             |
+//! | [`report`]     | what is printed, and the page                                                      | `cli`             |
+//! | `cli`          | the commands of the program                                                        | `cli`             |
+//!
+//! Equations, filters and the cycle read no files, draw no random numbers and print nothing. Whoever wants the filter alone reads
+//! [`gaussian`], [`filter`] and [`imm`], in that order.
 //!
 //! # From a paper's section to its room
 //!
