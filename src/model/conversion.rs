@@ -1,8 +1,5 @@
 //! Range and bearing turned into a position, and the covariance that the position then has: four conversions.
 //!
-//! After this file the reader knows how a linear filter is given a polar measurement, what is wrong with the plain way when the bearing is
-//! noisy, and how three debiased conversions mend it.
-//!
 //! ```text
 //! z = f r (cos θ, sin θ)                                     f: the factor of the conversion, near 1
 //! R = a u uᵀ + b n nᵀ,   u = (cos θ, sin θ), n = (−sin θ, cos θ)    a along the line of sight, b across it
@@ -126,8 +123,10 @@ impl Conversion {
     ///
     /// Evidence: as [`converted_covariance`], [`additive_variances`], [`multiplicative_variances`] and [`modified_unbiased_variances`].
     pub fn covariance<T: Real>(self, range: &T, bearing: &T, range_variance: &T, bearing_variance: &T) -> Matrix2<T> {
-        let squared_range = range.clone() * range.clone();
-        let w = attenuation(bearing_variance); // for the standard one, too: the noise of published cases was drawn with it
+        if self == Self::Standard {
+            return converted_covariance(range, &bearing.cos(), &bearing.sin(), range_variance, bearing_variance);
+        }
+        let (squared_range, w) = (range.clone() * range.clone(), attenuation(bearing_variance));
         let variances = self.variances(&squared_range, range_variance, bearing_variance, &w);
         in_the_plane(&variances, &bearing.cos(), &bearing.sin())
     }
