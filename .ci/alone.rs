@@ -1,23 +1,25 @@
 //! A program that has the specification and nothing else: a step of a Kalman filter, by hand on the front page of the documentation.
 
+use immaculate::filter::Filter;
 use immaculate::gaussian::Gaussian;
-use immaculate::imm::{Equations, Imm, Initial, Problem};
-use immaculate::model::{Measurement, motion::Mode};
+use immaculate::imm::{Imm, Initial, Interaction, Problem};
+use immaculate::model::Sensor;
+use immaculate::model::motion::{Mode, Motion};
 use nalgebra::{matrix, vector};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mode = Mode {
         name: "still".into(),
-        transition: matrix![1.0],
+        motion: Motion::Linear(matrix![1.0]),
         noise: matrix![1.0],
     };
     let problem = Problem {
         modes: vec![mode],
-        transition: vec![vec![1.0]],
-        measurement: Measurement::Linear(matrix![1.0]),
+        filters: vec![Filter::kalman()],
+        interaction: Interaction::Imm,
+        chain: vec![vec![1.0]],
+        sensor: Sensor::Linear(matrix![1.0]),
         measurement_noise: matrix![1.0],
-        rule: None,
-        fixed_gains: None,
     };
     let start = Gaussian {
         mean: vector![0.0],
@@ -27,7 +29,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         modes: vec![start],
         mode_probabilities: vec![1.0],
     };
-    let mut filter = Imm::new(problem, Equations::kalman(), &initial)?;
+    let mut filter = Imm::new(problem, &initial)?;
     let step = filter.step(Some(&vector![3.0]))?;
     // The prediction has the variance 2, the innovation 3: two thirds of the way to the measurement.
     assert_eq!(step.gains[0], matrix![2.0 / 3.0]);

@@ -10,25 +10,31 @@
 //! ν, S = L D Lᵀ ─ log_density ─▶ ln L                                   how well a mode explains the measurement
 //! ```
 
-use crate::matrix::{Ldl, quadratic_form};
+use crate::matrix::{Holds, Ldl, Shapes, quadratic_form, rows};
 use crate::number::{Field, Real};
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{Dim, OMatrix, OVector, U1};
 
 /// A mean and a covariance.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Gaussian<T, const N: usize> {
+pub struct Gaussian<T: Field, N: Dim>
+where
+    Shapes: Holds<N>,
+{
     /// The mean, in the units of the state.
-    pub mean: SVector<T, N>,
+    pub mean: OVector<T, N>,
     /// The covariance, N × N, symmetric, in products of the units of the state.
-    pub covariance: SMatrix<T, N, N>,
+    pub covariance: OMatrix<T, N, N>,
 }
 
-impl<T: Field, const N: usize> Gaussian<T, N> {
+impl<T: Field, N: Dim> Gaussian<T, N>
+where
+    Shapes: Holds<N>,
+{
     /// The estimate with zero mean and zero covariance, to be overwritten.
-    pub fn zeros() -> Self {
+    pub fn zeros(n: N) -> Self {
         Self {
-            mean: SVector::zeros(),
-            covariance: SMatrix::zeros(),
+            mean: OVector::zeros_generic(n, U1),
+            covariance: OMatrix::zeros_generic(n, n),
         }
     }
 }
@@ -62,8 +68,11 @@ impl<T: Field, const N: usize> Gaussian<T, N> {
 /// Errata: zhu2016 (55) lacks its limits i = 1…r and (59) a hat; liu2017 (12) starts its sum at i = 0. All notational.
 ///
 /// Evidence: `mixed_moments_are_those_of_the_mixture` (symbolic).
-pub fn mixture_mean<T: Field, const N: usize>(weights: &[T], components: &[Gaussian<T, N>]) -> SVector<T, N> {
-    let mut sum = SVector::zeros();
+pub fn mixture_mean<T: Field, N: Dim>(weights: &[T], components: &[Gaussian<T, N>]) -> OVector<T, N>
+where
+    Shapes: Holds<N>,
+{
+    let mut sum = OVector::zeros_generic(rows(&components[0].mean), U1);
     for (weight, component) in weights.iter().zip(components) {
         sum += &component.mean * weight.clone();
     }
@@ -115,12 +124,15 @@ pub fn mixture_mean<T: Field, const N: usize>(weights: &[T], components: &[Gauss
 ///
 /// Evidence: `mixed_moments_are_those_of_the_mixture` (symbolic), `printed_spread_of_two_models_is_not_the_mixed_covariance`,
 /// `printed_bound_of_the_moment_matching_term_is_exceeded`, `printed_blend_of_the_errors_is_only_an_upper_bound` (exact).
-pub fn mixture_covariance<T: Field, const N: usize>(
+pub fn mixture_covariance<T: Field, N: Dim>(
     weights: &[T],
     components: &[Gaussian<T, N>],
-    mean: &SVector<T, N>,
-) -> SMatrix<T, N, N> {
-    let mut sum = SMatrix::zeros();
+    mean: &OVector<T, N>,
+) -> OMatrix<T, N, N>
+where
+    Shapes: Holds<N>,
+{
+    let mut sum = OMatrix::zeros_generic(rows(mean), rows(mean));
     for (weight, component) in weights.iter().zip(components) {
         let deviation = &component.mean - mean;
         let spread = &deviation * deviation.transpose();
@@ -168,10 +180,13 @@ pub fn mixture_covariance<T: Field, const N: usize>(
 /// Evidence: `the_density_integrates_to_one` (property), `printed_likelihood_exponent_squares_the_determinant`,
 /// `printed_likelihood_without_the_determinant_of_two_pi_is_not_a_density`,
 /// `printed_likelihood_is_a_density_for_scalar_measurements_only`.
-pub fn log_density<T: Real, const M: usize>(residual: &SVector<T, M>, covariance: &Ldl<T, M>) -> T {
+pub fn log_density<T: Real, M: Dim>(residual: &OVector<T, M>, covariance: &Ldl<T, M>) -> T
+where
+    Shapes: Holds<M>,
+{
     let two_pi = T::pi() * T::integer(2);
     let mut log_determinant_of_two_pi_s = T::zero();
-    for pivot in &covariance.diagonal {
+    for pivot in covariance.diagonal.iter() {
         log_determinant_of_two_pi_s += (two_pi.clone() * pivot.clone()).ln();
     }
     let squared_distance = quadratic_form(covariance, residual);

@@ -12,25 +12,26 @@
 //! Two modes, one that hardly moves and one that moves a lot; each is a filter with one state. The comments are the arithmetic:
 //!
 //! ```
+//! use immaculate::filter::Filter;
 //! use immaculate::gaussian::Gaussian;
-//! use immaculate::imm::{Equations, Imm, Initial, Problem};
-//! use immaculate::model::{Measurement, motion::Mode};
+//! use immaculate::imm::{Imm, Initial, Interaction, Problem};
+//! use immaculate::model::{Sensor, motion::{Mode, Motion}};
 //! use nalgebra::{matrix, vector};
 //!
 //! let mode = |name: &str, noise: f64| {
-//!     Mode { name: name.into(), transition: matrix![1.0], noise: matrix![noise] }
+//!     Mode { name: name.into(), motion: Motion::Linear(matrix![1.0]), noise: matrix![noise] }
 //! };
 //! let problem = Problem {
 //!     modes: vec![mode("quiet", 1.0), mode("lively", 13.0)],
-//!     transition: vec![vec![0.5, 0.5], vec![0.5, 0.5]], // row i: from mode i
-//!     measurement: Measurement::Linear(matrix![1.0]),
+//!     chain: vec![vec![0.5, 0.5], vec![0.5, 0.5]], // row i: from mode i
+//!     sensor: Sensor::Linear(matrix![1.0]),
 //!     measurement_noise: matrix![1.0],
-//!     rule: None,
-//!     fixed_gains: None,
+//!     filters: vec![Filter::kalman()],
+//!     interaction: Interaction::Imm,
 //! };
 //! let at = |x: f64| Gaussian { mean: vector![x], covariance: matrix![1.0] };
 //! let initial = Initial { modes: vec![at(1.0), at(3.0)], mode_probabilities: vec![0.5, 0.5] };
-//! let mut filter = Imm::new(problem, Equations::kalman(), &initial)?;
+//! let mut filter = Imm::new(problem, &initial)?;
 //! let step = filter.step(Some(&vector![2.0]))?;
 //!
 //! // Where the modes come from: c = ½ · ½ + ½ · ½, and of that ½ · ½ from either.
@@ -87,39 +88,39 @@
 //! | 2.1, directions and weights | zhu2016 (9)-(13)       | [`rule::fifth_degree`]                                          |
 //! | 2.1, prediction             | zhu2016 (14)-(26)      | [`filter::cubature`], [`filter::raw`]                           |
 //! | 2.2, fresh points           | zhu2016 (27)-(34)      | [`matrix`], [`filter::cubature`]                                |
-//! | 2.2, what they measure      | zhu2016 (35)-(44)      | [`model::measurement`]                                          |
+//! | 2.2, what they measure      | zhu2016 (35)-(44)      | [`model::sensor`]                                          |
 //! | 2.2, its covariances        | zhu2016 (45)-(50)      | [`filter::raw`]                                                 |
 //! | 2.2, update                 | zhu2016 (51)-(53)      | [`filter::update`]                                              |
 //! | 3.1, input                  | zhu2016 (54)-(56)      | [`imm::probability`], [`gaussian`]                              |
 //! | 3.3, model probabilities    | zhu2016 (57), (58)     | [`gaussian`], [`imm::probability`]                              |
 //! | 3.4, output                 | zhu2016 (59), (60)     | [`gaussian`]                                                    |
-//! | 4, models                   | zhu2016 (61), (62)     | [`model::motion`], [`model::measurement`]                       |
+//! | 4, models                   | zhu2016 (61), (62)     | [`model::motion`], [`model::sensor`]                       |
 //! | 4, simulation               | zhu2016 (63), (64)     | [`paper::zhu2016`], [`statistics::rmse`]                        |
-//! | liu2017 2, problem          | liu2017 (1)            | [`model::motion`], [`model::measurement`]                       |
+//! | liu2017 2, problem          | liu2017 (1)            | [`model::motion`], [`model::sensor`]                       |
 //! | 2.1, the rule               | liu2017 (2)-(11)       | [`rule`], [`rule::sphere`], [`rule::simplex`]                   |
 //! | 3, step 1, interaction      | liu2017 (12), (13)     | [`gaussian`], [`imm::probability`]                              |
 //! | 3, step 2, points           | liu2017 (14)-(16)      | [`filter::cubature`], [`rule::simplex`]                         |
 //! | 3, step 2, prediction       | liu2017 (17)           | [`filter::cubature`]                                            |
-//! | 3, step 2, measurement      | liu2017 (18), (19)     | [`filter::cubature`], [`model::measurement`]                    |
+//! | 3, step 2, measurement      | liu2017 (18), (19)     | [`filter::cubature`], [`model::sensor`]                    |
 //! | 3, step 2, update           | liu2017 (20)           | [`filter::update`]                                              |
 //! | 3, steps 3 and 4            | liu2017 (21)-(24)      | [`gaussian`], [`imm::probability`]                              |
-//! | 4.1, models                 | liu2017 (25)-(31)      | [`model::motion`], [`model::measurement`]                       |
+//! | 4.1, models                 | liu2017 (25)-(31)      | [`model::motion`], [`model::sensor`]                       |
 //! | 4.2, simulation             | liu2017 (32)-(34)      | [`paper::liu2017`], [`statistics::rmse`]                        |
 //! | derbez2000 2.1, mixing      | derbez2000 (1), (3)    | [`gaussian`], [`imm::probability`]                              |
 //! | 2.1, the filters            | derbez2000 (2), (4)    | [`filter::kalman`], [`filter::update`]                          |
 //! | 2.2, the models             | derbez2000 (5), (6)    | [`model::acceleration`]                                         |
 //! | 2.2, the long-term error    | derbez2000 (7), (8)    | [`steady::mismatch`], [`filter::update`], [`steady::long_term`] |
-//! | 3, fixed gains              | not numbered           | [`filter::fixed_gain`], [`imm::fixed_gain`], [`steady::gains`]  |
+//! | 3, fixed gains              | not numbered           | [`filter::fixed_gain`], [`imm::problem`], [`steady::gains`]     |
 //! | 3, their equilibrium        | not numbered           | [`steady::riccati`], [`steady::reach`]                          |
 //! | 3.1, stability              | not numbered           | [`steady::perturbation`], [`steady::pair`], [`steady::verdict`] |
 //! | 4, simulation               | not numbered           | [`paper::derbez2000`]                                           |
 //! | sustika2015 2.1, motion     | sustika2015 (1)        | [`model::motion`], [`model::wiener`]                            |
-//! | 2.1, measurement            | sustika2015 (2)-(4)    | [`model::measurement`], [`imm::problem`]                        |
+//! | 2.1, measurement            | sustika2015 (2)-(4)    | [`model::sensor`], [`imm::problem`]                        |
 //! | 2.2, the filter             | sustika2015 (5)-(13)   | [`imm::probability`], [`gaussian`], [`imm::unequal`]            |
 //! | 3.1, Kalman filter          | sustika2015 (14)-(19)  | [`filter::kalman`], [`filter::update`]                          |
 //! | 3.1, converted measurements | sustika2015 (20)-(26)  | [`model::conversion`], [`filter::converted`]                    |
 //! | 3.2, points                 | sustika2015 (27)-(29)  | [`filter::cubature`], [`rule::unscented`]                       |
-//! | 3.2, what they measure      | sustika2015 (30), (31) | [`model::measurement`]                                          |
+//! | 3.2, what they measure      | sustika2015 (30), (31) | [`model::sensor`]                                          |
 //! | 3.2, its covariances        | sustika2015 (32), (33) | [`filter::cubature`]                                            |
 //! | 3.2, update                 | sustika2015 (34)-(36)  | [`filter::update`]                                              |
 //! | 4 and 5, simulation         | sustika2015 (37)-(39)  | [`statistics::fit_error`], [`paper::sustika2015`]               |

@@ -16,8 +16,14 @@
 //! Both read the lower triangle only. Neither repairs a matrix: a pivot that is not positive is an error. A row of zeros is no pivot: an
 //! entry of the state that is known exactly has one in its covariance, and in the square root.
 
+mod shapes;
+
+pub(crate) use shapes::rows;
+pub use shapes::{Holds, Shapes};
+
 use crate::number::{Field, Real};
-use nalgebra::{SMatrix, SVector};
+use nalgebra::allocator::Allocator;
+use nalgebra::{Dim, OMatrix, OVector, U1};
 use std::cmp::Ordering;
 
 /// A pivot of a factorisation was not positive, or could not be shown to be.
@@ -69,9 +75,13 @@ pub struct NotPositiveDefinite {
 /// Evidence: `the_cholesky_factor_times_its_transpose_is_the_matrix` (exact),
 /// `an_entry_without_variance_has_a_row_of_zeros_in_the_square_root` (exact),
 /// `a_matrix_that_is_not_positive_definite_has_no_cholesky_factor`.
-pub fn cholesky<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> Result<SMatrix<T, N, N>, NotPositiveDefinite> {
-    let mut root = SMatrix::<T, N, N>::zeros();
-    for j in 0..N {
+pub fn cholesky<T: Real, N: Dim>(matrix: &OMatrix<T, N, N>) -> Result<OMatrix<T, N, N>, NotPositiveDefinite>
+where
+    Shapes: Holds<N>,
+{
+    let n = matrix.nrows();
+    let mut root = OMatrix::<T, N, N>::zeros_generic(rows(matrix), rows(matrix));
+    for j in 0..n {
         if is_row_of_zeros(matrix, j) {
             continue;
         }
@@ -79,9 +89,9 @@ pub fn cholesky<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> Result<SM
         for k in 0..j {
             pivot -= root[(j, k)].clone() * root[(j, k)].clone();
         }
-        check_pivot(&pivot, j, N)?;
+        check_pivot(&pivot, j, n)?;
         root[(j, j)] = pivot.sqrt();
-        for i in j + 1..N {
+        for i in j + 1..n {
             let mut entry = matrix[(i, j)].clone();
             for k in 0..j {
                 entry -= root[(i, k)].clone() * root[(j, k)].clone();
@@ -93,8 +103,11 @@ pub fn cholesky<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> Result<SM
 }
 
 /// Whether row j of a symmetric matrix, of which the lower triangle is read, has nothing but zeros.
-fn is_row_of_zeros<T: Field, const N: usize>(matrix: &SMatrix<T, N, N>, j: usize) -> bool {
-    matrix[(j, j)].is_zero() && (0..N).all(|i| matrix[(i.max(j), i.min(j))].is_zero())
+fn is_row_of_zeros<T: Field, N: Dim>(matrix: &OMatrix<T, N, N>, j: usize) -> bool
+where
+    Shapes: Holds<N>,
+{
+    matrix[(j, j)].is_zero() && (0..matrix.nrows()).all(|i| matrix[(i.max(j), i.min(j))].is_zero())
 }
 
 /// A pivot must be known to be positive.
@@ -112,11 +125,14 @@ fn check_pivot<T: Field + PartialOrd>(pivot: &T, row: usize, dimension: usize) -
 
 /// The factors of P = L D Lᵀ; see [`ldl`].
 #[derive(Debug, Clone, PartialEq)]
-pub struct Ldl<T, const N: usize> {
+pub struct Ldl<T: Field, N: Dim>
+where
+    Shapes: Holds<N>,
+{
     /// L: lower triangular with ones on the diagonal.
-    pub lower: SMatrix<T, N, N>,
+    pub lower: OMatrix<T, N, N>,
     /// The diagonal of D.
-    pub diagonal: SVector<T, N>,
+    pub diagonal: OVector<T, N>,
 }
 
 /// The factorisation P = L D Lᵀ.
@@ -148,16 +164,20 @@ pub struct Ldl<T, const N: usize> {
 /// ```
 ///
 /// Evidence: `the_ldl_factors_multiply_to_the_matrix` (symbolic).
-pub fn ldl<T: Field, const N: usize>(matrix: &SMatrix<T, N, N>) -> Ldl<T, N> {
-    let mut lower = SMatrix::<T, N, N>::identity();
-    let mut diagonal = SVector::<T, N>::zeros();
-    for j in 0..N {
+pub fn ldl<T: Field, N: Dim>(matrix: &OMatrix<T, N, N>) -> Ldl<T, N>
+where
+    Shapes: Holds<N>,
+{
+    let n = matrix.nrows();
+    let mut lower = OMatrix::<T, N, N>::identity_generic(rows(matrix), rows(matrix));
+    let mut diagonal = OVector::<T, N>::zeros_generic(rows(matrix), U1);
+    for j in 0..n {
         let mut pivot = matrix[(j, j)].clone();
         for k in 0..j {
             pivot -= lower[(j, k)].clone() * lower[(j, k)].clone() * diagonal[k].clone();
         }
         diagonal[j] = pivot;
-        for i in j + 1..N {
+        for i in j + 1..n {
             let mut entry = matrix[(i, j)].clone();
             for k in 0..j {
                 entry -= lower[(i, k)].clone() * lower[(j, k)].clone() * diagonal[k].clone();
@@ -187,11 +207,12 @@ pub fn ldl<T: Field, const N: usize>(matrix: &SMatrix<T, N, N>) -> Ldl<T, N> {
 /// # Errors
 ///
 /// [`NotPositiveDefinite`] with the first pivot that is not.
-pub fn check_positive_definite<T: Field + PartialOrd, const N: usize>(
-    factors: &Ldl<T, N>,
-) -> Result<(), NotPositiveDefinite> {
+pub fn check_positive_definite<T: Field + PartialOrd, N: Dim>(factors: &Ldl<T, N>) -> Result<(), NotPositiveDefinite>
+where
+    Shapes: Holds<N>,
+{
     for (row, pivot) in factors.diagonal.iter().enumerate() {
-        check_pivot(pivot, row, N)?;
+        check_pivot(pivot, row, factors.diagonal.len())?;
     }
     Ok(())
 }
@@ -212,23 +233,24 @@ pub fn check_positive_definite<T: Field + PartialOrd, const N: usize>(
 /// ```
 ///
 /// Evidence: `solving_with_the_ldl_factors_inverts_the_matrix` (symbolic).
-pub fn solve<T: Field, const N: usize, const C: usize>(
-    factors: &Ldl<T, N>,
-    right_side: &SMatrix<T, N, C>,
-) -> SMatrix<T, N, C> {
+pub fn solve<T: Field, N: Dim, C: Dim>(factors: &Ldl<T, N>, right_side: &OMatrix<T, N, C>) -> OMatrix<T, N, C>
+where
+    Shapes: Holds<N> + Allocator<N, C>,
+{
+    let (n, columns) = right_side.shape();
     let mut solution = right_side.clone();
-    for column in 0..C {
-        for i in 0..N {
+    for column in 0..columns {
+        for i in 0..n {
             for k in 0..i {
                 let known = factors.lower[(i, k)].clone() * solution[(k, column)].clone();
                 solution[(i, column)] -= known;
             }
         }
-        for i in 0..N {
+        for i in 0..n {
             solution[(i, column)] /= factors.diagonal[i].clone();
         }
-        for i in (0..N).rev() {
-            for k in i + 1..N {
+        for i in (0..n).rev() {
+            for k in i + 1..n {
                 let known = factors.lower[(k, i)].clone() * solution[(k, column)].clone();
                 solution[(i, column)] -= known;
             }
@@ -253,10 +275,13 @@ pub fn solve<T: Field, const N: usize, const C: usize>(
 /// ```
 ///
 /// Evidence: `the_quadratic_form_is_the_one_of_the_inverse` (symbolic).
-pub fn quadratic_form<T: Field, const N: usize>(factors: &Ldl<T, N>, vector: &SVector<T, N>) -> T {
+pub fn quadratic_form<T: Field, N: Dim>(factors: &Ldl<T, N>, vector: &OVector<T, N>) -> T
+where
+    Shapes: Holds<N>,
+{
     let mut y = vector.clone();
     let mut sum = T::zero();
-    for i in 0..N {
+    for i in 0..y.len() {
         for k in 0..i {
             let known = factors.lower[(i, k)].clone() * y[k].clone();
             y[i] -= known;
@@ -286,9 +311,12 @@ pub fn quadratic_form<T: Field, const N: usize>(factors: &Ldl<T, N>, vector: &SV
 /// ```
 ///
 /// Evidence: `the_log_determinant_is_the_logarithm_of_the_determinant` (property).
-pub fn log_determinant<T: Real, const N: usize>(factors: &Ldl<T, N>) -> T {
+pub fn log_determinant<T: Real, N: Dim>(factors: &Ldl<T, N>) -> T
+where
+    Shapes: Holds<N>,
+{
     let mut sum = T::zero();
-    for pivot in &factors.diagonal {
+    for pivot in factors.diagonal.iter() {
         sum += pivot.ln();
     }
     sum
@@ -316,10 +344,14 @@ pub fn log_determinant<T: Real, const N: usize>(factors: &Ldl<T, N>) -> T {
 /// ```
 ///
 /// Evidence: `without_the_mirrored_triangle_a_long_run_fails` (property).
-pub fn mirrored<T: Field, const N: usize>(lower: SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+pub fn mirrored<T: Field, N: Dim>(lower: OMatrix<T, N, N>) -> OMatrix<T, N, N>
+where
+    Shapes: Holds<N>,
+{
     let mut matrix = lower;
-    for i in 0..N {
-        for j in i + 1..N {
+    let n = matrix.nrows();
+    for i in 0..n {
+        for j in i + 1..n {
             matrix[(i, j)] = matrix[(j, i)].clone();
         }
     }
@@ -340,13 +372,19 @@ pub fn mirrored<T: Field, const N: usize>(lower: SMatrix<T, N, N>) -> SMatrix<T,
 /// assert!(!is_positive_definite(&matrix![1.0, 1.0; 1.0, 1.0])); // 1, then 1 − 1²
 /// assert!(!is_positive_definite(&matrix![1.0, 2.0; 2.0, 1.0])); // 1, then 1 − 2²
 /// ```
-pub fn is_positive_definite<T: Field + PartialOrd, const N: usize>(matrix: &SMatrix<T, N, N>) -> bool {
+pub fn is_positive_definite<T: Field + PartialOrd, N: Dim>(matrix: &OMatrix<T, N, N>) -> bool
+where
+    Shapes: Holds<N>,
+{
     check_positive_definite(&ldl(matrix)).is_ok()
 }
 
 /// A matrix is symmetric when it equals its transpose entry by entry.
-pub fn is_symmetric<T: Field, const N: usize>(matrix: &SMatrix<T, N, N>) -> bool {
-    (0..N).all(|i| (0..i).all(|j| matrix[(i, j)] == matrix[(j, i)]))
+pub fn is_symmetric<T: Field, N: Dim>(matrix: &OMatrix<T, N, N>) -> bool
+where
+    Shapes: Holds<N>,
+{
+    (0..matrix.nrows()).all(|i| (0..i).all(|j| matrix[(i, j)] == matrix[(j, i)]))
 }
 
 /// A symmetric matrix is positive semidefinite when its elimination meets no negative pivot, and below a pivot of zero
@@ -373,13 +411,16 @@ pub fn is_symmetric<T: Field, const N: usize>(matrix: &SMatrix<T, N, N>) -> bool
 ///
 /// Evidence: `a_matrix_is_positive_semidefinite_exactly_when_no_pivot_is_negative`,
 /// `a_covariance_of_low_rank_is_positive_semidefinite_as_rounded` (property).
-pub fn is_positive_semidefinite<T: Field + PartialOrd, const N: usize>(matrix: &SMatrix<T, N, N>) -> bool {
+pub fn is_positive_semidefinite<T: Field + PartialOrd, N: Dim>(matrix: &OMatrix<T, N, N>) -> bool
+where
+    Shapes: Holds<N>,
+{
     if !all_finite(matrix) {
         return false;
     }
-    let rounding = T::integer(i64::try_from(N).unwrap_or(i64::MAX)) / T::integer(1 << 50);
+    let rounding = T::integer(i64::try_from(matrix.nrows()).unwrap_or(i64::MAX)) / T::integer(1 << 50);
     let mut rest = matrix.clone();
-    let mut rows: Vec<usize> = (0..N).collect();
+    let mut rows: Vec<usize> = (0..matrix.nrows()).collect();
     while !rows.is_empty() {
         let j = take_greatest_pivot(&mut rows, matrix, &rest);
         let noise = rounding.clone() * matrix[(j, j)].clone();
@@ -411,11 +452,14 @@ pub fn is_positive_semidefinite<T: Field + PartialOrd, const N: usize>(matrix: &
 }
 
 /// Takes out the row whose pivot is the greatest part of its diagonal entry.
-fn take_greatest_pivot<T: Field + PartialOrd, const N: usize>(
+fn take_greatest_pivot<T: Field + PartialOrd, N: Dim>(
     rows: &mut Vec<usize>,
-    matrix: &SMatrix<T, N, N>,
-    rest: &SMatrix<T, N, N>,
-) -> usize {
+    matrix: &OMatrix<T, N, N>,
+    rest: &OMatrix<T, N, N>,
+) -> usize
+where
+    Shapes: Holds<N>,
+{
     let mut best = 0;
     for place in 1..rows.len() {
         let (i, j) = (rows[place], rows[best]);
@@ -434,6 +478,9 @@ pub fn is_finite<T: Field>(value: &T) -> bool {
 }
 
 /// All entries are finite; see [`is_finite`].
-pub fn all_finite<T: Field, const R: usize, const C: usize>(matrix: &SMatrix<T, R, C>) -> bool {
+pub fn all_finite<T: Field, R: Dim, C: Dim>(matrix: &OMatrix<T, R, C>) -> bool
+where
+    Shapes: Allocator<R, C>,
+{
     matrix.iter().all(is_finite)
 }

@@ -8,14 +8,12 @@
 mod published;
 
 use immaculate::file::digest;
-use immaculate::imm::Quantity;
+use immaculate::imm::{Failure, Quantity};
 use immaculate::number::Real;
 use immaculate::oracle::case::{self, Case, Expected};
 use immaculate::oracle::flags::FLAGS;
 use immaculate::oracle::problem::{FilterFile, MeasurementFile, ProblemFile, Rows};
-use immaculate::oracle::run::Computed;
-use immaculate::oracle::shape::{self, Work};
-use immaculate::oracle::trace::Dimensions;
+use immaculate::oracle::trace::Trace;
 use published::write::write;
 use published::{all, rejected};
 use serde_json::{Value, json};
@@ -139,14 +137,9 @@ fn every_problem_runs_in_doubles() {
             panic!("{}: {error}", problem.id);
         }
         let run = run(&problem);
-        assert!(
-            run.values.failures.is_empty(),
-            "{}: {:?}",
-            problem.id,
-            run.values.failures
-        );
-        for (step, quantity, mode) in run.values.values.all_places() {
-            let Some(values) = run.values.values.get(step, quantity, mode) else {
+        assert!(run.failures.is_empty(), "{}: {:?}", problem.id, run.failures);
+        for (step, quantity, mode) in run.values.all_places() {
+            let Some(values) = run.values.get(step, quantity, mode) else {
                 continue;
             };
             let is_finite = values.iter().all(|value| value.is_finite());
@@ -289,7 +282,7 @@ fn flags_of_filters_and_angles_are_true() {
         let mut wraps = false;
         let mut straddles = false;
         for (step, mode, innovation) in run.each(Quantity::Innovation) {
-            let of = |quantity| run.values.values.get(step, quantity, mode).unwrap();
+            let of = |quantity| run.values.get(step, quantity, mode).unwrap();
             let predicted = of(Quantity::PredictedMeasurement);
             let s = of(Quantity::InnovationCovariance);
             let z = problem.measurements[step - 1].z.as_ref().unwrap();
@@ -530,45 +523,36 @@ fn differences(place: &str, a: &Value, b: &Value) -> Vec<String> {
 
 /// A run in doubles.
 struct Run {
-    values: Computed<f64>,
+    values: Trace,
+    failures: Vec<Failure>,
     has_negative_weight: bool,
 }
 
 impl Run {
     /// Step, mode and value of a quantity wherever it has one.
     fn each(&self, quantity: Quantity) -> Vec<(usize, usize, Vec<f64>)> {
-        let places = self.values.values.all_places().filter(|place| place.1 == quantity);
+        let places = self.values.all_places().filter(|place| place.1 == quantity);
         places
             .filter_map(|(step, quantity, mode)| {
-                let value = self.values.values.get(step, quantity, mode)?;
+                let value = self.values.get(step, quantity, mode)?;
                 Some((step, mode, value.clone()))
             })
             .collect()
     }
 }
 
-struct InDoubles<'a>(&'a ProblemFile);
-
-impl Work for InDoubles<'_> {
-    type Output = Run;
-
-    fn run<const N: usize, const M: usize>(self) -> Run {
-        let setup = self.0.setup::<f64, N, M>(|value| value).unwrap();
-        let weights = setup
-            .problem
-            .rule
-            .iter()
-            .flat_map(|rule| rule.weights.iter().chain(&rule.covariance_weights));
-        Run {
-            has_negative_weight: weights.copied().any(|weight| weight < 0.0),
-            values: setup.run(),
-        }
-    }
-}
-
 fn run(problem: &ProblemFile) -> Run {
-    let Dimensions { n, m, .. } = problem.dimensions();
-    shape::dispatch(n, m, InDoubles(problem)).unwrap()
+    let setup = problem.setup_in_doubles().unwrap();
+    let rules = setup.problem.filters.iter().flat_map(|filter| filter.rules());
+    let mut weights = rules
+        .flatten()
+        .flat_map(|rule| rule.weights.iter().chain(&rule.covariance_weights));
+    let computed = setup.run();
+    Run {
+        has_negative_weight: weights.any(|weight| weight.value() < 0.0),
+        values: computed.in_doubles(),
+        failures: computed.failures,
+    }
 }
 
 fn locked(id: &str) -> &'static Case {

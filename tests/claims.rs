@@ -5,7 +5,7 @@
 //! the judges find with their own numbers of runs is in `immaculate claims`, and what rests on no runs at all is here as it is there, but
 //! for a smaller map of stability.
 
-use immaculate::imm::{Failure, cycle::Cause};
+use immaculate::imm::{Failure, failure::Cause};
 use immaculate::paper::derbez2000::relative::{Relative, Tally, extremes};
 use immaculate::paper::derbez2000::{arithmetic, claims, long_term, search, stability};
 use immaculate::paper::experiment::Experiment;
@@ -314,7 +314,7 @@ fn an_experiment_is_bounded_where_no_run_fails_and_none_reaches_the_limit() {
     experiment.runs[1][0].failure = Some(Failure {
         step: 100,
         mode: "left turn".into(),
-        equation: "liu2017 (1)",
+        value: "measurement",
         cause: Cause::MeasurementNotFinite,
     });
     assert_eq!(

@@ -7,7 +7,7 @@
 mod common;
 
 use common::program::{error_of, immaculate, names};
-use immaculate::imm::Quantity;
+use immaculate::imm::{Needs, Quantity};
 use immaculate::oracle::case::{self, Case, Expected};
 use immaculate::oracle::csv;
 use immaculate::oracle::run::run_in_doubles;
@@ -66,7 +66,7 @@ fn a_trace_shows_every_value_with_its_equation() {
     );
     for quantity in Quantity::ALL
         .into_iter()
-        .filter(|quantity| !quantity.needs_conversion())
+        .filter(|quantity| !quantity.needs(Needs::Conversion))
     {
         let heading = format!("  {}  —  {}\n", quantity.name(), quantity.equation());
         assert!(text.contains(&heading), "{heading}");
@@ -253,7 +253,7 @@ fn the_list_has_every_case_and_every_selection_its_own() {
         assert_eq!(value["rejected"], class);
         assert!(text.contains(&problem.id), "{}", problem.id);
     }
-    assert!(text.contains(&format!("{} cases. The flags:", all().len())));
+    assert!(text.contains(&format!("{} cases. The filters:", all().len())) && text.contains("\nThe flags:\n"));
     let ids = |selection: &[&str]| {
         let value = json_of(&[&["cases", "list", "--json"], selection].concat());
         let ids = value["cases"].as_array().unwrap().iter();

@@ -14,13 +14,14 @@
 //!
 //! Points on a curved measurement and merged modes approximate the posterior. What that may cost is an allowance with its reason.
 
+use immaculate::filter::Filter;
 use immaculate::filter::{kalman, update};
 use immaculate::gaussian::{Gaussian, log_density, mixture_covariance, mixture_mean};
 use immaculate::imm::printed::log_density_21;
-use immaculate::imm::{Equations, Imm, Initial, Problem, Step};
+use immaculate::imm::{Equations, Imm, Initial, Interaction, Problem, Step};
 use immaculate::matrix::{cholesky, ldl, quadratic_form};
-use immaculate::model::motion::{Mode, constant_velocity, coordinated_turn, integrated_noise};
-use immaculate::model::{Measurement, PolarComponent};
+use immaculate::model::motion::{Mode, Motion, constant_velocity, coordinated_turn, integrated_noise};
+use immaculate::model::{PolarComponent, Sensor};
 use immaculate::paper::Paper;
 use immaculate::paper::comparison::{Comparison, Quantity};
 use immaculate::paper::monte_carlo::{Generator, run};
@@ -29,11 +30,11 @@ use immaculate::rule::RuleName;
 use immaculate::statistics::Estimate;
 use immaculate::statistics::consistency::{bounds, nees, nis};
 use immaculate::statistics::estimate::mean;
-use nalgebra::{Matrix2, Matrix4, SMatrix, SVector, Vector2, Vector4, matrix};
+use nalgebra::{Matrix2, Matrix4, SMatrix, SVector, U2, U4, Vector2, Vector4, matrix};
 use rayon::prelude::*;
 
-type Model = Problem<f64, 4, 2>;
-type Table = Equations<f64, 4, 2>;
+type Model = Problem<f64, U4, U2>;
+type Table = Equations<f64, U4, U2>;
 
 /// The seed of this file; run m has stream m.
 const SEED: u64 = 2016;
@@ -53,9 +54,13 @@ fn a_matched_kalman_filter_is_as_good_as_it_says() {
     let truth = linear(1.0, 1.0);
     let cubature = with_rule(truth.clone(), &RuleName::FifthDegree);
     for (name, filter, equations) in [
-        ("Kalman", &truth, Equations::kalman()),
-        ("cubature", &cubature, Equations::cubature()),
-        ("cubature about the origin", &cubature, Equations::raw_cubature()),
+        ("Kalman", &truth, Equations::standard()),
+        ("cubature", &cubature, Equations::standard()),
+        (
+            "cubature about the origin",
+            &cubature,
+            Equations::standard().with_raw_moments(),
+        ),
     ] {
         let outcomes = experiment(&truth, filter, &equations, RUNS);
         // Runs are independent of each other, so at any one step the sum over runs is χ².
@@ -84,7 +89,7 @@ fn a_kalman_filter_with_wrong_noise_is_rejected() {
         ("R × 2", linear(1.0, 2.0)),
         ("R / 2", linear(1.0, 0.5)),
     ] {
-        let outcomes = experiment(&truth, &filter, &Equations::kalman(), RUNS);
+        let outcomes = experiment(&truth, &filter, &Equations::standard(), RUNS);
         let (of_nees, of_nis) = moments_of_a_mismatched_filter(&truth, &filter);
         let (nees, nis): (Values, Values) = (|outcome| &outcome.nees, |outcome| &outcome.nis);
         for (figure, degrees, expected, values) in [("NEES", 4.0, of_nees, nees), ("NIS", 2.0, of_nis, nis)] {
@@ -116,7 +121,7 @@ fn a_filter_with_printed_weights_is_rejected() {
         experiment(&truth, &filter, equations, RUNS)
     };
     // The right rule: the error is that of the measurement, 4 to 5 m along an axis; 50 m is ten times that.
-    let right = tracked(&RuleName::FifthDegree, &Equations::cubature());
+    let right = tracked(&RuleName::FifthDegree, &Equations::standard());
     assert!(
         right
             .iter()
@@ -125,7 +130,7 @@ fn a_filter_with_printed_weights_is_rejected() {
 
     // zhu2016 (13): the weights sum to 5/3, so the first prediction is two thirds of the target's distance too far out. The
     // deviations about it are as large and enter the covariance, which hides the error from the NEES: too careful, and useless.
-    let printed = tracked(&RuleName::FifthDegreePrinted, &Equations::cubature());
+    let printed = tracked(&RuleName::FifthDegreePrinted, &Equations::standard());
     assert!(
         printed.iter().all(|outcome| outcome.first_error > 100.0),
         "off the track at the first step"
@@ -133,12 +138,12 @@ fn a_filter_with_printed_weights_is_rejected() {
     assert!(!is_inside(at_step(&printed, 0, |outcome| &outcome.nees), 4.0, RUNS));
     assert!(printed.iter().all(|outcome| outcome.failed), "and it does not last");
     // About the origin, as the paper writes the covariance, 5/3 x̂x̂ᵀ − (5/3)² x̂x̂ᵀ is negative: no first step at all.
-    let printed = tracked(&RuleName::FifthDegreePrinted, &Equations::raw_cubature());
+    let printed = tracked(&RuleName::FifthDegreePrinted, &Equations::standard().with_raw_moments());
     assert!(printed.iter().all(|outcome| outcome.failed && outcome.nees.is_empty()));
 
     // liu2017 (11) and (16): the weights sum to 4/5 and 7/10, and every prediction falls short.
     for rule in [RuleName::SimplexPrinted11, RuleName::SimplexPrinted16] {
-        let printed = tracked(&rule, &Equations::cubature());
+        let printed = tracked(&rule, &Equations::standard());
         let found = at_step(&printed, STEPS - 1, |outcome| &outcome.nees);
         // Measured 64 and 110, where 4.2 is the bound.
         assert!(found > 40.0, "{rule:?}: NEES {found}");
@@ -159,7 +164,7 @@ fn a_matched_cubature_filter_is_as_good_as_it_says() {
         RuleName::Simplex,
         RuleName::GaussHermite(3),
     ] {
-        let outcomes = experiment(&truth, &with_rule(truth.clone(), &rule), &Equations::cubature(), RUNS);
+        let outcomes = experiment(&truth, &with_rule(truth.clone(), &rule), &Equations::standard(), RUNS);
         for k in [0, 1, 4, STEPS - 1] {
             let found = at_step(&outcomes, k, |outcome| &outcome.nees);
             assert!(is_inside(found, 4.0, RUNS), "{rule:?}: NEES {found} at step {}", k + 1);
@@ -181,7 +186,7 @@ fn a_cubature_filter_with_wrong_noise_is_rejected() {
         ("R / 2", range_bearing(1.0, 0.5)),
     ] {
         let filter = with_rule(filter, &RuleName::FifthDegree);
-        let outcomes = experiment(&truth, &filter, &Equations::cubature(), RUNS);
+        let outcomes = experiment(&truth, &filter, &Equations::standard(), RUNS);
         let figure = Figure::new("NEES", 4.0, 0.0, over_runs(&outcomes, |outcome| &outcome.nees));
         // So far beyond the bound that another draw would be outside as well, but for one in 700: three standard errors more.
         assert!(figure.excess() > STANDARD_ERRORS + 3.0, "{name}: {figure:?}");
@@ -200,7 +205,7 @@ fn the_first_step_of_the_cycle_is_exact_and_merging_costs_little_later() {
         .map(|run| {
             let draw = draw(&truth, SHORT, &mut Generator::new(SEED, run as u64));
             let exact = exact_posteriors(&truth, &draw);
-            let mut imm = Imm::new(truth.clone(), Equations::kalman(), &draw.initial).unwrap();
+            let mut imm = Imm::new(truth.clone(), &draw.initial).unwrap();
             let merged: Vec<_> = draw
                 .measurements
                 .iter()
@@ -219,7 +224,7 @@ fn the_first_step_of_the_cycle_is_exact_and_merging_costs_little_later() {
         }
     }
     let of_step = |k: usize, merged_too: bool| -> Vec<f64> {
-        let value = |(draw, exact, merged): &(Draw, Vec<Posterior>, Vec<Step<f64, 4, 2>>)| {
+        let value = |(draw, exact, merged): &Run| {
             let combined = if merged_too {
                 &merged[k].combined
             } else {
@@ -252,8 +257,8 @@ fn an_imm_filter_whose_chain_is_that_of_the_truth_is_nearly_as_good_as_it_says()
     let linear = switching(linear(1.0, 1.0));
     let polar = with_rule(switching(range_bearing(1.0, 1.0)), &RuleName::FifthDegree);
     for (name, model, equations, allowed) in [
-        ("linear", &linear, Equations::kalman(), LINEAR),
-        ("range and bearing", &polar, Equations::cubature(), RANGE_BEARING),
+        ("linear", &linear, Equations::standard(), LINEAR),
+        ("range and bearing", &polar, Equations::standard(), RANGE_BEARING),
     ] {
         let outcomes = experiment(model, model, &equations, RUNS);
         for figure in figures(&outcomes, allowed) {
@@ -267,8 +272,8 @@ fn an_imm_filter_without_a_part_of_its_equations_is_rejected() {
     let linear = switching(linear(1.0, 1.0));
     let polar = with_rule(switching(range_bearing(1.0, 1.0)), &RuleName::FifthDegree);
     for (measurement, model, right, allowed) in [
-        ("linear", &linear, Equations::kalman(), LINEAR),
-        ("range and bearing", &polar, Equations::cubature(), RANGE_BEARING),
+        ("linear", &linear, Equations::standard(), LINEAR),
+        ("range and bearing", &polar, Equations::standard(), RANGE_BEARING),
     ] {
         let of_right = experiment(model, model, &right, RUNS);
         for (name, telling, equations) in variants(&right) {
@@ -303,7 +308,7 @@ fn variants(right: &Table) -> [(&'static str, &'static str, Table); 5] {
             "combined without the spread of the means",
             "NEES",
             Equations {
-                combined_covariance: |_, _, now| without_spread(&now.mode_probabilities, &now.updated),
+                combined_covariance: |_, _, now, _| without_spread(&now.mode_probabilities, &now.updated),
                 ..*right
             },
         ),
@@ -311,7 +316,7 @@ fn variants(right: &Table) -> [(&'static str, &'static str, Table); 5] {
             "not mixed",
             "NEES",
             Equations {
-                mixing_probability: |_, _, _, j, i| f64::from(i == j),
+                mixing_probabilities: |problem, _, _, j| (0..problem.modes.len()).map(|i| f64::from(i == j)).collect(),
                 ..*right
             },
         ),
@@ -385,24 +390,24 @@ fn linear(noise_factor: f64, measurement_factor: f64) -> Model {
     Problem {
         modes: vec![Mode {
             name: "constant velocity".into(),
-            transition: constant_velocity(&1.0),
+            motion: Motion::Linear(constant_velocity(&1.0)),
             noise: integrated_noise(&(0.5 * noise_factor), &1.0),
         }],
-        transition: vec![vec![1.0]],
-        measurement: Measurement::Linear(matrix![1.0, 0.0, 0.0, 0.0; 0.0, 0.0, 1.0, 0.0]),
+        chain: vec![vec![1.0]],
+        sensor: Sensor::Linear(matrix![1.0, 0.0, 0.0, 0.0; 0.0, 0.0, 1.0, 0.0]),
         measurement_noise: matrix![25.0, 5.0; 5.0, 16.0] * measurement_factor,
-        rule: None,
-        fixed_gains: None,
+        filters: vec![Filter::kalman()],
+        interaction: Interaction::Imm,
     }
 }
 
 /// The same target seen in range and bearing: 20 m and 2 mrad, at 15 km.
 fn range_bearing(noise_factor: f64, measurement_factor: f64) -> Model {
     Problem {
-        measurement: Measurement::Polar {
-            components: [PolarComponent::Range, PolarComponent::Bearing],
+        sensor: Sensor::Polar {
+            components: vec![PolarComponent::Range, PolarComponent::Bearing],
             position: [0, 2],
-            sensor: [0.0, 0.0],
+            location: [0.0, 0.0],
         },
         measurement_noise: matrix![400.0, 0.0; 0.0, 4e-6] * measurement_factor,
         ..linear(noise_factor, 1.0)
@@ -413,7 +418,7 @@ fn range_bearing(noise_factor: f64, measurement_factor: f64) -> Model {
 fn switching(single: Model) -> Model {
     let mode = |name: &str, transition: Matrix4<f64>, density: f64| Mode {
         name: name.into(),
-        transition,
+        motion: Motion::Linear(transition),
         noise: integrated_noise(&density, &1.0),
     };
     Problem {
@@ -422,20 +427,20 @@ fn switching(single: Model) -> Model {
             mode("left turn", coordinated_turn(&0.1, &1.0), 4.0),
             mode("right turn", coordinated_turn(&-0.1, &1.0), 4.0),
         ],
-        transition: vec![vec![0.9, 0.05, 0.05], vec![0.1, 0.85, 0.05], vec![0.1, 0.05, 0.85]],
+        chain: vec![vec![0.9, 0.05, 0.05], vec![0.1, 0.85, 0.05], vec![0.1, 0.05, 0.85]],
         ..single
     }
 }
 
 fn with_rule(problem: Model, rule: &RuleName) -> Model {
     Problem {
-        rule: Some(rule.rule().unwrap()),
+        filters: vec![Filter::points(rule.rule().unwrap())],
         ..problem
     }
 }
 
 /// Where every run starts, and how well it is known.
-fn start() -> Gaussian<f64, 4> {
+fn start() -> Gaussian<f64, U4> {
     Gaussian {
         mean: Vector4::new(12_000.0, -100.0, 9_000.0, 150.0),
         covariance: Matrix4::from_diagonal(&Vector4::new(2500.0, 100.0, 2500.0, 100.0)),
@@ -463,7 +468,7 @@ struct Draw {
     modes: Vec<usize>,
     states: Vec<Vector4<f64>>,
     measurements: Vec<Vector2<f64>>,
-    initial: Initial<f64, 4>,
+    initial: Initial<f64, U4>,
 }
 
 /// Runs of a filter on draws from a truth.
@@ -492,19 +497,19 @@ fn draw(truth: &Model, steps: usize, generator: &mut Generator) -> Draw {
     let mut mode = chosen(&equal, generator);
     let mut state = start.mean;
     for _ in 0..steps {
-        mode = chosen(&truth.transition[mode], generator);
-        state = truth.modes[mode].transition * state + normal(&truth.modes[mode].noise, generator);
+        mode = chosen(&truth.chain[mode], generator);
+        state = truth.modes[mode].motion.of(&state) + normal(&truth.modes[mode].noise, generator);
         let noise = normal(&truth.measurement_noise, generator);
         draw.modes.push(mode);
         draw.states.push(state);
-        draw.measurements.push(truth.measurement.of(&state) + noise);
+        draw.measurements.push(truth.sensor.of(&state) + noise);
     }
     draw
 }
 
 /// A filter on a draw, to its end or to the first step that cannot be computed.
 fn tracked(filter: &Model, equations: &Table, draw: &Draw) -> Outcome {
-    let mut imm = Imm::new(filter.clone(), *equations, &draw.initial).unwrap();
+    let mut imm = Imm::with_equations(filter.clone(), *equations, &draw.initial).unwrap();
     let mut outcome = Outcome {
         nees: Vec::new(),
         nis: Vec::new(),
@@ -533,18 +538,21 @@ fn tracked(filter: &Model, equations: &Table, draw: &Draw) -> Outcome {
     outcome
 }
 
+/// A draw, its exact posteriors, and the steps of the filter.
+type Run = (Draw, Vec<Posterior>, Vec<Step<f64, U4, U2>>);
+
 /// The exact posterior after a step: mean and covariance of the whole mixture, and the probabilities of the modes.
 struct Posterior {
-    combined: Gaussian<f64, 4>,
+    combined: Gaussian<f64, U4>,
     mode_probabilities: Vec<f64>,
 }
 
 /// The exact posteriors after each step of a short draw: one Kalman filter for every history of modes, none merged.
 fn exact_posteriors(truth: &Model, draw: &Draw) -> Vec<Posterior> {
-    let h = truth.measurement.matrix();
+    let h = truth.h();
     let initial = &draw.initial;
     // Logarithm of the weight, last mode, estimate.
-    let mut histories: Vec<(f64, usize, Gaussian<f64, 4>)> = (0..truth.modes.len())
+    let mut histories: Vec<(f64, usize, Gaussian<f64, U4>)> = (0..truth.modes.len())
         .map(|i| (initial.mode_probabilities[i].ln(), i, initial.modes[i].clone()))
         .collect();
     let mut posteriors = Vec::new();
@@ -552,16 +560,16 @@ fn exact_posteriors(truth: &Model, draw: &Draw) -> Vec<Posterior> {
         let mut longer = Vec::new();
         for (weight, i, estimate) in &histories {
             for (j, mode) in truth.modes.iter().enumerate() {
-                let predicted = kalman::predicted_mean(&mode.transition, &estimate.mean);
-                let covariance = kalman::predicted_covariance(&mode.transition, &estimate.covariance, &mode.noise);
+                let predicted = kalman::predicted_mean(&mode.motion.matrix(), &estimate.mean);
+                let covariance = kalman::predicted_covariance(&mode.motion.matrix(), &estimate.covariance, &mode.noise);
                 let s = kalman::innovation_covariance(&h, &covariance, &truth.measurement_noise);
                 let gain = update::gain(&kalman::cross_covariance(&covariance, &h), &ldl(&s));
-                let innovation = z - h * predicted;
+                let innovation = z - h.as_ref() * predicted;
                 let updated = Gaussian {
                     mean: update::updated_mean(&predicted, &gain, &innovation),
                     covariance: covariance - gain * s * gain.transpose(),
                 };
-                let weight = weight + truth.transition[*i][j].ln() + log_density(&innovation, &ldl(&s));
+                let weight = weight + truth.chain[*i][j].ln() + log_density(&innovation, &ldl(&s));
                 longer.push((weight, j, updated));
             }
         }
@@ -571,7 +579,7 @@ fn exact_posteriors(truth: &Model, draw: &Draw) -> Vec<Posterior> {
     posteriors
 }
 
-fn posterior(histories: &[(f64, usize, Gaussian<f64, 4>)], modes: usize) -> Posterior {
+fn posterior(histories: &[(f64, usize, Gaussian<f64, U4>)], modes: usize) -> Posterior {
     let greatest = histories
         .iter()
         .map(|history| history.0)
@@ -706,10 +714,10 @@ impl Moments {
 /// NEES and NIS at the last step of a Kalman filter whose noises are not those of the truth, from the covariance that its errors
 /// really have: with gain W, Σ = (I − W H)(F Σ Fᵀ + Q)(I − W H)ᵀ + W R Wᵀ with the true Q and R.
 fn moments_of_a_mismatched_filter(truth: &Model, filter: &Model) -> (Moments, Moments) {
-    let Measurement::Linear(h) = &truth.measurement else {
+    let Sensor::Linear(h) = &truth.sensor else {
         panic!("a linear measurement");
     };
-    let f = &truth.modes[0].transition;
+    let f = &*truth.modes[0].motion.matrix();
     let (mut claimed, mut actual) = (start().covariance, start().covariance);
     let (mut claimed_innovation, mut actual_innovation) = (Matrix2::zeros(), Matrix2::zeros());
     for _ in 0..STEPS {
@@ -729,7 +737,7 @@ fn moments_of_a_mismatched_filter(truth: &Model, filter: &Model) -> (Moments, Mo
 }
 
 /// A mixture's covariance without the spread of the means.
-fn without_spread(weights: &[f64], components: &[Gaussian<f64, 4>]) -> Matrix4<f64> {
+fn without_spread(weights: &[f64], components: &[Gaussian<f64, U4>]) -> Matrix4<f64> {
     let centred: Vec<_> = components
         .iter()
         .map(|component| Gaussian {

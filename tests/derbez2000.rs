@@ -6,7 +6,8 @@
 mod common;
 
 use common::ROUNDOFF;
-use immaculate::imm::{Equations, Imm, Initial, Problem};
+use immaculate::filter::{Filter, Update};
+use immaculate::imm::{Imm, Initial, Problem};
 use immaculate::model::Conversion;
 use immaculate::paper::derbez2000::contestants::Noise;
 use immaculate::paper::derbez2000::contestants::{Contestant, Coordinates};
@@ -18,7 +19,7 @@ use immaculate::paper::derbez2000::{self, path};
 use immaculate::paper::specification::Choices;
 use immaculate::paper::verdict::Verdict;
 use immaculate::statistics::Estimate;
-use nalgebra::{Matrix1, Matrix3, Vector1, Vector2, Vector3};
+use nalgebra::{Matrix1, Matrix3, U1, U3, Vector1, Vector2, Vector3};
 
 // The truth
 
@@ -138,11 +139,14 @@ fn the_fixed_gains_are_those_with_which_the_kalman_filters_end() {
     ] {
         let scenario = of(&choices);
         for problem in &scenario.contestants[1].problems {
-            for (mode, fixed) in problem.modes.iter().zip(problem.fixed_gains.iter().flatten()) {
+            for (mode, filter) in problem.modes.iter().zip(&problem.filters) {
+                let Update::Given(fixed) = &filter.update else {
+                    panic!("the gains are given");
+                };
                 let alone = Problem {
                     modes: vec![mode.clone()],
-                    transition: vec![vec![1.0]],
-                    fixed_gains: None,
+                    chain: vec![vec![1.0]],
+                    filters: vec![Filter::kalman()],
                     ..problem.clone()
                 };
                 let settled = settled(alone);
@@ -159,7 +163,7 @@ fn the_fixed_gains_are_those_with_which_the_kalman_filters_end() {
 }
 
 /// The gain and the innovation variance of a Kalman filter of one mode after many steps.
-fn settled(problem: Problem<f64, 3, 1>) -> (Vector3<f64>, f64) {
+fn settled(problem: Problem<f64, U3, U1>) -> (Vector3<f64>, f64) {
     let initial = Initial {
         modes: vec![immaculate::gaussian::Gaussian {
             mean: Vector3::zeros(),
@@ -167,7 +171,7 @@ fn settled(problem: Problem<f64, 3, 1>) -> (Vector3<f64>, f64) {
         }],
         mode_probabilities: vec![1.0],
     };
-    let mut filter = Imm::new(problem, Equations::kalman(), &initial).unwrap();
+    let mut filter = Imm::new(problem, &initial).unwrap();
     for _ in 0..2000 {
         filter.step(Some(&Vector1::new(0.0))).unwrap();
     }

@@ -16,8 +16,10 @@ use immaculate::model::acceleration::{
     acceleration_response, constant_acceleration, embedded_constant_velocity, embedded_velocity_response,
     position_matrix, response_noise,
 };
-use immaculate::model::motion::{Mode, acceleration_noise, constant_velocity, coordinated_turn, integrated_noise};
-use immaculate::model::{Measurement, PolarComponent};
+use immaculate::model::motion::{
+    Mode, Motion, acceleration_noise, constant_velocity, coordinated_turn, integrated_noise,
+};
+use immaculate::model::{PolarComponent, Sensor};
 use immaculate::number::{Enclosure, Field, Rational, RationalFunction, Surd};
 use immaculate::paper::operations::{CoastalRadar, Sums};
 use immaculate::paper::sustika2015::reasoning::{
@@ -40,7 +42,7 @@ use immaculate::steady::gains::{
     alpha_beta_covariance, alpha_beta_gain, alpha_beta_gamma_covariance, alpha_beta_gamma_gain, alpha_beta_gamma_index,
     alpha_beta_index, innovation_variance,
 };
-use nalgebra::{Matrix4, SMatrix, SVector, Vector3, matrix, vector};
+use nalgebra::{Const, Matrix4, SMatrix, SVector, U0, U1, U2, U3, U4, Vector3, matrix, vector};
 use num_traits::{One, Zero};
 use std::collections::BTreeMap;
 
@@ -262,7 +264,7 @@ fn gauss_hermite_nodes_are_the_roots_of_the_hermite_polynomial() {
 #[test]
 fn gauss_hermite_rule_of_two_nodes_is_the_corners_of_a_cube() {
     // Every number here is a double: ±1 and 1/8.
-    let rule = gauss_hermite::<f64, 3>(2).unwrap();
+    let rule = gauss_hermite::<f64, _>(U3, 2).unwrap();
     assert_eq!(rule.weights, vec![0.125; 8]);
     for corner in 0..8 {
         let sign = |axis: usize| if corner >> axis & 1 == 0 { 1.0 } else { -1.0 };
@@ -354,7 +356,7 @@ fn rules_have_the_documented_number_of_points() {
             assert_eq!(simplex(n).unwrap().points.len(), n * n + 3 * n + 3);
         }
     }
-    assert_eq!(gauss_hermite::<f64, 4>(3).unwrap().points.len(), 81);
+    assert_eq!(gauss_hermite::<f64, _>(U4, 3).unwrap().points.len(), 81);
     for rule in all_rules(4) {
         assert_eq!(rule.points.len(), rule.weights.len());
         assert_eq!(rule.points.len(), rule.covariance_weights.len());
@@ -368,7 +370,7 @@ fn rules_of_a_mean_and_a_covariance_exist_from_dimension_one_and_the_simplex_fro
     assert!(fifth_degree(0).is_err());
     assert!(unscented(0, &Parameters::of_kappa(whole(1))).is_err());
     assert!(simplex(1).is_err());
-    assert!(gauss_hermite::<f64, 0>(3).is_err());
+    assert!(gauss_hermite::<f64, _>(U0, 3).is_err());
     // n + λ = 0 and below have no radius.
     assert!(unscented(2, &Parameters::of_kappa(-whole(2))).is_err());
     assert!(unscented(2, &Parameters::of_kappa(-whole(3))).is_err());
@@ -815,7 +817,7 @@ fn harmonic_sums_and_moments_find_the_same_degree() {
 #[test]
 fn rules_become_the_nearest_doubles() {
     for exact in all_rules(4) {
-        let rule = Rule::<f64, 4>::from_exact(&exact).unwrap();
+        let rule = Rule::<f64, U4>::from_exact(&exact).unwrap();
         for (double_point, point) in rule.points.iter().zip(&exact.points) {
             for (double, coordinate) in double_point.iter().zip(point) {
                 check_nearest(*double, coordinate);
@@ -827,11 +829,11 @@ fn rules_become_the_nearest_doubles() {
             check_nearest(*double, &surd(weight));
         }
     }
-    assert!(Rule::<f64, 3>::from_exact(&fifth_degree(4).unwrap()).is_err());
+    assert!(Rule::<f64, U3>::from_exact(&fifth_degree(4).unwrap()).is_err());
     // Three Gauss-Hermite nodes are the fifth-degree rule of one dimension, to the last bit: the root of the double 3 is the
     // double nearest to √3.
-    let three_nodes = gauss_hermite::<f64, 1>(3).unwrap();
-    let fifth = Rule::<f64, 1>::from_exact(&fifth_degree(1).unwrap()).unwrap();
+    let three_nodes = gauss_hermite::<f64, _>(U1, 3).unwrap();
+    let fifth = Rule::<f64, U1>::from_exact(&fifth_degree(1).unwrap()).unwrap();
     assert_eq!(three_nodes, fifth);
 }
 
@@ -849,7 +851,7 @@ fn every_rule_name_gives_its_rule() {
     let with_parameters = RuleName::Unscented(Some(kappa_one.clone()));
     assert_eq!(with_parameters.exact(4), unscented(4, &kappa_one));
     // All names, those of the Gauss-Hermite rules too, give a rule in doubles; and no two the same.
-    let rules: Vec<Rule<f64, 4>> = RuleName::NAMES
+    let rules: Vec<Rule<f64, U4>> = RuleName::NAMES
         .iter()
         .map(|name| name.parse::<RuleName>().unwrap().rule().unwrap())
         .collect();
@@ -858,7 +860,7 @@ fn every_rule_name_gives_its_rule() {
     }
     for m in 2..=5 {
         let name = format!("gauss-hermite-{m}").parse::<RuleName>().unwrap();
-        assert_eq!(name.rule::<f64, 2>(), gauss_hermite::<f64, 2>(m));
+        assert_eq!(name.rule::<f64, U2>(), gauss_hermite::<f64, _>(U2, m));
         assert_eq!(name.exact(2), Err(InvalidRule::NestedRoots));
     }
 }
@@ -869,7 +871,7 @@ fn every_rule_name_gives_its_rule() {
 fn in_small_integers_a_cubature_filter_is_the_kalman_filter_bit_for_bit() {
     // The points ±2 e of the third-degree rule in four dimensions and its weights 1/8 keep all sums exact in doubles; so here are
     // the equations that need an ordered number, with their measurement.
-    let rule = Rule::<f64, 4>::from_exact(&third_degree(4).unwrap()).unwrap();
+    let rule = Rule::<f64, U4>::from_exact(&third_degree(4).unwrap()).unwrap();
     let mut draw = Integers::new();
     for _ in 0..50 {
         let root = draw.unit_lower::<4>().map(|x| x as f64);
@@ -878,7 +880,7 @@ fn in_small_integers_a_cubature_filter_is_the_kalman_filter_bit_for_bit() {
         let h = draw.doubles::<2, 4>();
         let noise_root = draw.doubles::<2, 2>();
         let noise = noise_root * noise_root.transpose();
-        let measurement = Measurement::Linear(h);
+        let measurement = Sensor::Linear(h);
         let points: Vec<_> = rule.points.iter().map(|xi| cubature::point(&root, xi, &mean)).collect();
         let values: Vec<_> = points.iter().map(|point| measurement.of(point)).collect();
         // The centre serves angles only; another one must change nothing.
@@ -913,7 +915,7 @@ fn diagonal_mixing_with_equal_weights_is_the_mixture() {
     let mut draw = Integers::new();
     let weights = vec![0.25; 4];
     for _ in 0..20 {
-        let estimates: Vec<Gaussian<f64, 3>> = (0..4)
+        let estimates: Vec<Gaussian<f64, U3>> = (0..4)
             .map(|_| {
                 let (a, b, c) = (draw.next_double(), draw.next_double(), draw.next_double());
                 Gaussian {
@@ -1090,7 +1092,7 @@ fn a_mode_lacks_what_neither_motion_nor_noise_gives_it() {
     ] {
         let mode = Mode {
             name: String::new(),
-            transition,
+            motion: Motion::Linear(transition),
             noise,
         };
         assert_eq!([mode.lacks(0), mode.lacks(1)], [lacks; 2]);
@@ -1245,11 +1247,11 @@ fn only_what_is_known_to_be_zero_vanishes() {
 #[test]
 fn a_linear_measurement_has_the_signs_of_linearity_and_range_and_bearing_have_none() {
     let position = SMatrix::<Enclosure, 2, 6>::identity();
-    assert_eq!(signs_of_linearity(&Measurement::Linear(position)), [Some(true); 3]);
-    let polar = Measurement::Polar {
-        components: [PolarComponent::Range, PolarComponent::Bearing],
+    assert_eq!(signs_of_linearity(&Sensor::Linear(position)), [Some(true); 3]);
+    let polar = Sensor::Polar {
+        components: vec![PolarComponent::Range, PolarComponent::Bearing],
         position: [0, 1],
-        sensor: [0, 0].map(Enclosure::integer),
+        location: [0, 0].map(Enclosure::integer),
     };
     assert_eq!(signs_of_linearity(&polar), [Some(false); 3]);
 }
@@ -1273,7 +1275,7 @@ fn points_keep_both_moments_where_both_weights_are_right() {
         ..rule
     };
     for wrong in [mean_is_wrong, covariance_is_wrong] {
-        assert!(Rule::<RationalFunction, 4>::from_exact(&wrong).is_ok());
+        assert!(Rule::<RationalFunction, U4>::from_exact(&wrong).is_ok());
         assert!(!keeps_both_moments::<4>(&wrong));
     }
 }
@@ -1296,10 +1298,10 @@ fn fixed_step(
 }
 
 /// An estimate without a covariance.
-fn estimate_of(mean: Vector3<Rational>) -> Gaussian<Rational, 3> {
+fn estimate_of(mean: Vector3<Rational>) -> Gaussian<Rational, U3> {
     Gaussian {
         mean,
-        ..Gaussian::zeros()
+        ..Gaussian::zeros(U3)
     }
 }
 
@@ -1386,7 +1388,7 @@ fn squared_range_moments<const N: usize>(
     mean: &SVector<Surd, N>,
     kappa: Rational,
 ) -> Moments {
-    let rule = Rule::<Surd, N>::from_exact(&unscented(N, &Parameters::of_kappa(kappa)).unwrap()).unwrap();
+    let rule = Rule::<Surd, Const<N>>::from_exact(&unscented(N, &Parameters::of_kappa(kappa)).unwrap()).unwrap();
     let points: Vec<_> = rule.points.iter().map(|xi| cubature::point(root, xi, mean)).collect();
     let squared_range = |point: &SVector<Surd, N>| point[0].clone() * &point[0] + point[1].clone() * &point[1];
     let values: Vec<_> = points.iter().map(|point| vector![squared_range(point)]).collect();

@@ -6,8 +6,9 @@
 //! tolerance but the cases' own.
 
 use immaculate::file::digest;
+use immaculate::imm::Quantity;
 use immaculate::oracle::case::{self, BadCase, Case, Expected, LOCK, Lock};
-use immaculate::oracle::certify::{certified_decimals, certify, long_csv};
+use immaculate::oracle::certify::{Certified, certified_decimals, certify, long_csv};
 use immaculate::oracle::csv;
 use immaculate::oracle::invalid::{Class, Invalid};
 use immaculate::oracle::problem::ProblemFile;
@@ -404,8 +405,8 @@ fn wrong_shapes() -> Vec<Defect> {
             "/state",
             json!([]),
             shape,
-            "problem.units",
-            "has 4 entries where 0 are needed",
+            "problem.state",
+            "has 0 components; there must be 1 to 32",
         ),
     ]
 }
@@ -772,32 +773,6 @@ fn wrong_fixed_gains() -> Vec<Defect> {
             "invalid type: null",
         ),
     ]
-}
-
-/// A shape that is not built: consistent in itself, but of seven entries.
-#[test]
-fn a_shape_that_is_not_built_is_refused_with_those_that_are() {
-    let mut problem = ProblemFile::read(&text_of("step.n1-m1.two-modes")).unwrap();
-    let identity: Vec<Vec<f64>> = (0..7)
-        .map(|i| (0..7).map(|j| f64::from(u8::from(i == j))).collect())
-        .collect();
-    problem.state = vec!["x".into(); 7];
-    problem.units = vec!["m".into(); 7];
-    problem.measurement = serde_json::from_value(json!({ "kind": "linear", "H": [[1, 0, 0, 0, 0, 0, 0]] })).unwrap();
-    for mode in &mut problem.modes {
-        mode.transition.clone_from(&identity);
-        mode.noise.clone_from(&identity);
-    }
-    for estimate in &mut problem.initial.modes {
-        estimate.mean = vec![0.0; 7];
-        estimate.covariance = Some(identity.clone());
-    }
-    let invalid = problem.check().unwrap_err();
-    assert_eq!((invalid.class, invalid.place.as_str()), (Class::Shape, "problem.state"));
-    assert!(
-        invalid.reason.contains("has 7 entries") && invalid.reason.contains("8 and 2"),
-        "{invalid}"
-    );
 }
 
 /// What JSON cannot say, a filter in Rust can: the measurement is checked, too.
@@ -1514,6 +1489,41 @@ fn a_case_with_another_digit_is_not_proven() {
     assert!(longer.verify().is_err());
 }
 
+/// The noise is a measurement: another order of operations in an equation draws another sample, and a case is proven with it all the same.
+#[test]
+fn another_sample_of_the_noise_is_accepted_and_another_noise_is_not() {
+    let good = of("update.kalman");
+    let certified = certify(&good.problem).unwrap();
+    // Published with another noise: each number times the factor of its place.
+    let published = |factor: &dyn Fn((usize, Quantity, usize)) -> f64| {
+        let noise = certified
+            .noise
+            .map(|place, spread| spread.iter().map(|one| one * factor(place)).collect());
+        let text = case::trace_text(
+            &good.problem.id,
+            &Certified {
+                noise,
+                ..certified.clone()
+            },
+        );
+        Case {
+            trace_text: text.leak(),
+            ..good.clone()
+        }
+    };
+    assert!(published(&|_| 1.0).verify().is_ok());
+    // All numbers three and a half times as large, or as small, are those of other equations; twice as large is another sample.
+    for factor in [3.5, 1.0 / 3.5] {
+        let refused = published(&|_| factor).verify();
+        assert!(matches!(refused, Err(BadCase::Noise { .. })), "{factor}: {refused:?}");
+    }
+    assert!(published(&|_| 2.0).verify().is_ok());
+    // One number eight times as large is another sample; fifty times as large it is none of this noise.
+    let one = |factor: f64| move |place| if place == (1, Quantity::Gain, 0) { factor } else { 1.0 };
+    assert!(published(&one(8.0)).verify().is_ok());
+    assert!(matches!(published(&one(50.0)).verify(), Err(BadCase::Differs { .. })));
+}
+
 #[test]
 fn a_case_with_another_problem_is_not_proven() {
     let mut spoilt = of("update.kalman").clone();
@@ -1681,8 +1691,8 @@ fn refusal(problem: &Value) -> Invalid {
     }
 }
 
-fn quantity(name: &str) -> immaculate::imm::Quantity {
-    let mut all = immaculate::imm::Quantity::ALL.into_iter();
+fn quantity(name: &str) -> Quantity {
+    let mut all = Quantity::ALL.into_iter();
     all.find(|quantity| quantity.name() == name).unwrap()
 }
 

@@ -12,9 +12,9 @@ use immaculate::model::formula::{
 };
 use immaculate::model::function::{Function, InvalidFunction};
 use immaculate::model::space::{Component, InvalidSpace, Space};
-use immaculate::model::{Measurement, PolarComponent};
+use immaculate::model::{PolarComponent, Sensor};
 use immaculate::number::{Dual, Enclosure, Field, RandomRounding, Rational, RationalFunction, Real};
-use nalgebra::SVector;
+use nalgebra::{SVector, U2};
 use num_traits::{One, Zero};
 use proptest::prelude::*;
 
@@ -743,10 +743,10 @@ proptest! {
     fn a_space_measures_as_the_polar_measurement_does(
         a in [-9.0..9.0_f64, -9.0..9.0], b in [-9.0..9.0_f64, -9.0..9.0], centre in [-9.0..9.0_f64, -3.0..3.0], weight in 0.0..1.0_f64,
     ) {
-        let measurement = Measurement::<f64, 2, 2>::Polar {
-            components: [PolarComponent::Range, PolarComponent::Bearing],
+        let measurement = Sensor::<f64, U2, U2>::Polar {
+            components: vec![PolarComponent::Range, PolarComponent::Bearing],
             position: [0, 1],
-            sensor: [0.0, 0.0],
+            location: [0.0, 0.0],
         };
         let vector = |values: [f64; 2]| SVector::<f64, 2>::from(values);
         let difference = measurement.difference(&vector(a), &vector(b));

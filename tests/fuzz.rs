@@ -367,9 +367,10 @@ fn problem_law(text: &str) -> bool {
             sentence.starts_with("step ") && sentence.contains(", mode `"),
             "{sentence}"
         );
+        let value = sentence.split(", ").nth(2).and_then(|rest| rest.split_once(": "));
         assert!(
-            sentence.contains("20") && sentence.contains(": "),
-            "an equation and a cause: {sentence}"
+            value.is_some_and(|(name, cause)| !name.contains(' ') && cause.len() > 10),
+            "a value and a cause: {sentence}"
         );
         sentence[5..].split(',').next().unwrap().parse::<usize>().unwrap() - 1
     });

@@ -14,24 +14,32 @@
 mod common;
 
 use common::{
-    CHAIN, ROUNDOFF, RULES, Scene, TURN_RATE, all_scenes, bits, bits_of, bits_of_mode, distance, distance_of_runs,
-    fixed_gain_scene, linear_scene, linear_scene_with, mode, polar_scene_seen_from, rounding_of,
+    CHAIN, ROUNDOFF, RULES, Scene, TURN_RATE, all_scenes, bits, bits_of, converted_scene, distance, distance_of_runs,
+    fixed_gain_scene, linear_scene, linear_scene_with, mode, polar_scene, polar_scene_seen_from, rounding_of, rule_of,
+    truth,
 };
-use immaculate::filter::{cubature, kalman, raw, update};
+use immaculate::filter::fixed_gain::FixedGain;
+use immaculate::filter::{Filter, Transform, Update, cubature, kalman, raw, update};
 use immaculate::gaussian::{Gaussian, log_density, mixture_covariance, mixture_mean};
 use immaculate::imm::probability::predicted_mode_probability;
-use immaculate::imm::{Equations, Step};
-use immaculate::matrix::{cholesky, is_positive_semidefinite, is_symmetric, ldl};
-use immaculate::model::Measurement;
+use immaculate::imm::{Equations, Imm, Initial, Interaction, Problem, Quantity, Step};
+use immaculate::matrix::{Holds, Shapes, cholesky, is_positive_semidefinite, is_symmetric, ldl};
 use immaculate::model::angle::wrap;
-use immaculate::model::motion::coordinated_turn;
-use immaculate::number::Rational;
+use immaculate::model::function::Function;
+use immaculate::model::motion::{Mode, Motion, constant_velocity, coordinated_turn, integrated_noise};
+use immaculate::model::space::{Component, Space};
+use immaculate::model::{Conversion, PolarComponent, Sensor};
+use immaculate::number::{self, Field, RandomRounding, Rational};
 use immaculate::paper::zhu2016::diagonal_mixing;
-use immaculate::rule::Rule;
 use immaculate::rule::unscented::{Parameters, unscented};
-use nalgebra::{Matrix3, Matrix4, RowVector3, SVector, Vector2, Vector4, vector};
+use immaculate::rule::{Rule, RuleName};
+use nalgebra::{
+    Const, DMatrix, DVector, Dim, Dyn, Matrix3, Matrix4, RowVector3, SMatrix, SVector, U2, U4, U8, Vector2, Vector4,
+    matrix, vector,
+};
 use proptest::prelude::*;
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 // One filter
 
@@ -60,7 +68,7 @@ fn one_mode_is_the_plain_filter() {
 #[test]
 fn the_identity_transition_never_mixes() {
     for (name, mut scene) in all_scenes() {
-        scene.problem.transition = identity_chain(3);
+        scene.problem.chain = identity_chain(3);
         let run = scene.run();
         for j in 0..3 {
             let plain = plain_run(&scene, j);
@@ -100,7 +108,7 @@ fn identical_modes_are_the_plain_filter_for_any_transition_matrix() {
     for chain in [asymmetric, cyclic, absorbing] {
         for (name, scene) in all_scenes() {
             let mut scene = with_identical_modes(&scene);
-            scene.problem.transition.clone_from(&chain);
+            scene.problem.chain.clone_from(&chain);
             let run = scene.run();
             let plain = plain_run(&scene, 0);
             let allowed = rounding_of(&run);
@@ -124,7 +132,7 @@ proptest! {
     ) {
         let scene = if polar { polar_scene_seen_from([0.0, 0.0], "simplex-5") } else { linear_scene() };
         let mut scene = with_identical_modes(&scene);
-        scene.problem.transition = rows.to_vec();
+        scene.problem.chain = rows.to_vec();
         scene.initial.mode_probabilities = start;
         let run = scene.run();
         let allowed = rounding_of(&run);
@@ -193,7 +201,7 @@ fn without_information_probabilities_follow_the_markov_chain() {
 }
 
 /// A step without a detection learns nothing: the probabilities follow the chain, and the estimates are the predicted ones, bit for
-/// bit. What comes from a measurement has no value, also when it had one a step before.
+/// bit. What comes from a measurement is not there, also when it was a step before.
 #[test]
 fn steps_without_a_detection_predict_and_nothing_else() {
     for (name, scene) in all_scenes() {
@@ -202,26 +210,32 @@ fn steps_without_a_detection_predict_and_nothing_else() {
         assert_eq!(missed, [6, 14, 15, 16], "one alone, and three in a row");
         for k in missed {
             let (before, step) = (&run[k - 1], &run[k]);
-            let chain = &scene.problem.transition;
+            let chain = &scene.problem.chain;
             let expected = along_the_chain(chain, &before.mode_probabilities);
             assert_eq!(step.mode_probabilities, expected, "{name}");
             assert_eq!(step.predicted_mode_probabilities, expected, "{name}");
             assert_eq!(step.updated, step.predicted, "{name}");
             assert_eq!(step.combined, step.combined_prediction, "{name}");
-            assert!(step.log_evidence.is_nan());
-            for j in 0..3 {
-                let measured = step.innovations[j]
-                    .iter()
-                    .chain(&step.predicted_measurements[j])
-                    .chain(&step.innovation_covariances[j])
-                    .chain(&step.cross_covariances[j])
-                    .chain(&step.gains[j])
-                    .chain([&step.log_likelihoods[j]])
-                    .chain(step.measured_points[j].iter().flatten())
-                    .chain(step.predicted_points[j].iter().flatten())
-                    .chain(&step.predicted_square_roots[j]);
-                assert!(measured.into_iter().all(|value| value.is_nan()), "{name}");
-            }
+            // Nothing was measured: its probability is one.
+            assert_eq!(bits([&step.evidence, &step.log_evidence]), bits([&1.0, &0.0]), "{name}");
+            let measured = [
+                step.innovations.len(),
+                step.predicted_measurements.len(),
+                step.innovation_covariances.len(),
+                step.cross_covariances.len(),
+                step.gains.len(),
+                step.log_likelihoods.len(),
+                step.relative_likelihoods.len(),
+                step.measured_points.len(),
+                step.predicted_points.len(),
+            ];
+            assert_eq!(measured, [0; 9], "{name}");
+            assert_eq!(
+                (before.gains.len(), before.log_likelihoods.len()),
+                if k > 14 && k < 17 { (0, 0) } else { (3, 3) }
+            );
+            // The points of the motion are those of every step.
+            assert_eq!(step.propagated_points.len(), 3, "{name}");
         }
     }
 }
@@ -232,7 +246,7 @@ fn the_first_step_mixes() {
     for (name, scene) in all_scenes() {
         let first = &scene.run()[0];
         let initial = &scene.initial;
-        let predicted = along_the_chain(&scene.problem.transition, &initial.mode_probabilities);
+        let predicted = along_the_chain(&scene.problem.chain, &initial.mode_probabilities);
         assert_eq!(first.predicted_mode_probabilities, predicted, "{name}");
         for j in 0..3 {
             for i in 0..3 {
@@ -259,7 +273,7 @@ fn equal_rows_give_every_mode_the_same_input() {
     for (name, scene) in all_scenes() {
         let with_row = |row: [f64; 3]| {
             let mut scene = scene.clone();
-            scene.problem.transition = vec![row.to_vec(); 3];
+            scene.problem.chain = vec![row.to_vec(); 3];
             scene.run()
         };
         for step in with_row([0.5, 0.25, 0.25]) {
@@ -283,7 +297,7 @@ fn equal_rows_give_every_mode_the_same_input() {
 #[test]
 fn a_mode_that_cannot_be_reached_keeps_its_own_estimate_and_no_weight() {
     for (name, mut scene) in all_scenes() {
-        scene.problem.transition = vec![vec![0.75, 0.25, 0.0], vec![0.0, 0.5, 0.5], vec![0.0, 0.0, 1.0]];
+        scene.problem.chain = vec![vec![0.75, 0.25, 0.0], vec![0.0, 0.5, 0.5], vec![0.0, 0.0, 1.0]];
         scene.initial.mode_probabilities = vec![1.0, 0.0, 0.0];
         let run = scene.run();
 
@@ -532,10 +546,10 @@ fn covariances_stay_symmetric_to_the_last_bit() {
 fn the_combined_estimate_is_output_only() {
     for (name, scene) in all_scenes() {
         let mut other = scene.clone();
-        other.equations.combined_mean = |_, _, _| vector![1.0, 2.0, 3.0, 4.0];
-        other.equations.combined_covariance = |_, _, _| Matrix4::zeros();
-        other.equations.combined_prediction_mean = |_, _, _| vector![4.0, 3.0, 2.0, 1.0];
-        other.equations.combined_prediction_covariance = |_, _, _| Matrix4::zeros();
+        other.equations.combined_mean = |_, _, _, _| vector![1.0, 2.0, 3.0, 4.0];
+        other.equations.combined_covariance = |_, _, _, _| Matrix4::zeros();
+        other.equations.combined_prediction_mean = |_, _, _, _| vector![4.0, 3.0, 2.0, 1.0];
+        other.equations.combined_prediction_covariance = |_, _, _, _| Matrix4::zeros();
         for (a, b) in other.run().iter().zip(&scene.run()) {
             for j in 0..3 {
                 assert_eq!(bits_of_mode(a, j), bits_of_mode(b, j), "{name}");
@@ -589,7 +603,7 @@ fn permuting_the_modes_permutes_the_answer() {
         }
         // To permute the modes and not the chain is another problem.
         let mut wrong = with_modes(&scene, &[1, 2, 0]);
-        wrong.problem.transition.clone_from(&scene.problem.transition);
+        wrong.problem.chain.clone_from(&scene.problem.chain);
         let (wrong, right) = (&wrong.run()[29], &run[29]);
         assert!(distance(&wrong.combined, &right.combined) > 0.01, "{name}");
     }
@@ -607,7 +621,8 @@ fn mirroring_the_scene_mirrors_the_answer() {
     for (name, scene) in all_scenes() {
         let run = scene.run();
         let mut in_the_mirror = mirrored(&scene);
-        if let Some(rule) = &mut in_the_mirror.problem.rule {
+        let filters = in_the_mirror.problem.filters.iter_mut();
+        for rule in filters.flat_map(|filter| filter.rules_mut()).flatten() {
             for point in &mut rule.points {
                 *point = MIRROR() * *point;
             }
@@ -654,7 +669,7 @@ fn the_answer_does_not_depend_on_where_the_bearing_is_cut() {
             let scene = polar_scene_seen_from([0.0, north], rule);
             let run = scene.run();
             let mut turned = scene.clone();
-            turned.problem.measurement = common::range_bearing_from([0.0, -north]);
+            turned.problem.sensor = common::range_bearing_from([0.0, -north]);
             for estimate in &mut turned.initial.modes {
                 estimate.mean = -estimate.mean;
             }
@@ -683,13 +698,12 @@ fn the_answer_does_not_depend_on_where_the_bearing_is_cut() {
             // Without wrapping the innovation, the points' mean or the points' differences it is another answer, at one of the
             // crossings at least.
             let mut without_wrap = [turned.clone(), turned.clone(), turned.clone()];
-            without_wrap[0].equations.innovation =
-                |_, _, now, j| now.measurement.unwrap() - now.predicted_measurements[j];
+            without_wrap[0].equations.innovation = |_, z, now, j| z - now.predicted_measurements[j];
             without_wrap[1].equations.predicted_measurement = |problem, _, now, j| {
-                let weights = &problem.rule.as_ref().unwrap().weights;
-                cubature::weighted_mean(weights, &now.measured_points[j])
+                let [_, rule] = problem.filter(j).rules();
+                cubature::weighted_mean(&rule.unwrap().weights, &now.measured_points[j])
             };
-            without_wrap[2].equations = Equations::raw_cubature();
+            without_wrap[2].equations = Equations::standard().with_raw_moments();
             for (caught, scene) in is_caught.iter_mut().zip(&without_wrap) {
                 *caught |= apart(scene) > 0.01;
             }
@@ -759,7 +773,7 @@ fn the_raw_form_is_the_centred_form_up_to_its_greater_rounding() {
     let kalman = linear_scene().run();
     for rule in RULES {
         let mut scene = linear_scene_with(rule);
-        scene.equations = Equations::raw_cubature();
+        scene.equations = Equations::standard().with_raw_moments();
         let run = scene.run();
         let apart = distance_of_runs(&run, &kalman);
         let steps = run.len() as f64;
@@ -815,7 +829,7 @@ fn the_raw_form_loses_the_digits_of_the_squared_position() {
     }
 }
 
-/// Far enough away nothing is left: the raw form's covariance is not positive definite and the step fails, with the equation's number,
+/// Far enough away nothing is left: the raw form's covariance is not positive definite and the step fails, with the value's name,
 /// where the centred form goes on.
 #[test]
 fn the_raw_form_fails_where_the_centred_form_goes_on() {
@@ -831,9 +845,16 @@ fn the_raw_form_fails_where_the_centred_form_goes_on() {
         }
         scene
     };
-    assert!(far_away(Equations::cubature()).try_run().is_ok());
-    let failure = far_away(Equations::raw_cubature()).try_run().unwrap_err();
-    assert_eq!((failure.step, failure.equation), (1, "zhu2016 (27)"));
+    assert!(far_away(Equations::standard()).try_run().is_ok());
+    let failure = far_away(Equations::standard().with_raw_moments())
+        .try_run()
+        .unwrap_err();
+    assert_eq!((failure.step, failure.value), (1, "predicted_measurement"));
+    let cause = failure.cause.to_string();
+    assert!(
+        cause.starts_with("the predicted covariance is not positive definite"),
+        "{cause}"
+    );
 }
 
 // Failures
@@ -865,9 +886,9 @@ fn a_failed_step_leaves_the_filter_at_the_step_before() {
 /// With κ = −3/2 the innovation covariance is positive, and it takes two updates until an estimate's own covariance is not.
 #[test]
 fn negative_weights_can_leave_no_covariance_and_the_failure_names_it() {
-    let over_the_sensor = |rule: Rule<f64, 4>| {
+    let over_the_sensor = |rule: Rule<f64, U4>| {
         let mut scene = polar_scene_seen_from([0.0, 0.0], "unscented");
-        scene.problem.rule = Some(rule);
+        scene.problem.filters = vec![Filter::points(rule)];
         for estimate in &mut scene.initial.modes {
             estimate.mean = vector![0.0, 10.0, 0.0, -5.0];
             estimate.covariance = Matrix4::from_diagonal(&vector![1e6, 1e2, 1e6, 1e2]);
@@ -885,13 +906,13 @@ fn negative_weights_can_leave_no_covariance_and_the_failure_names_it() {
     let failure = over_the_sensor(kappa(-5)).try_run().unwrap_err();
     assert_eq!(
         failure.to_string(),
-        "step 1, mode `constant velocity`, zhu2016 (51): the innovation covariance is not positive definite: pivot 1 of 2 is not \
-         positive"
+        "step 1, mode `constant velocity`, gain: the innovation covariance is not positive definite: pivot 1 of 2 is not positive"
     );
     let failure = over_the_sensor(kappa(-3)).try_run().unwrap_err();
     assert_eq!(
         failure.to_string(),
-        "step 3, mode `constant velocity`, zhu2016 (1): the mixed covariance is not positive definite: pivot 3 of 4 is not positive"
+        "step 3, mode `constant velocity`, predicted.mean: the mixed covariance is not positive definite: pivot 3 of 4 is not \
+         positive"
     );
     // Rules whose weights at the positions are positive go through; κ = 3 − n is among them, with its −1/3 at the centre.
     for rule in RULES {
@@ -905,7 +926,7 @@ fn negative_weights_can_leave_no_covariance_and_the_failure_names_it() {
 #[test]
 fn unmixed_modes_with_fixed_gains_stand_alone() {
     let mut scene = fixed_gain_scene();
-    scene.equations = Equations::fixed_gain_unmixed();
+    scene.problem.interaction = Interaction::Unmixed;
     let run = scene.run();
     for j in 0..3 {
         let alone = fixed_gain_run(&scene, j);
@@ -915,8 +936,8 @@ fn unmixed_modes_with_fixed_gains_stand_alone() {
     }
     // With other modes beside it, another chain and other likelihoods, the first mode does the same.
     let mut other = scene.clone();
-    other.problem.transition = CHAIN.iter().rev().map(|row| row.to_vec()).collect();
-    for given in &mut other.problem.fixed_gains.as_mut().unwrap()[1..] {
+    other.problem.chain = CHAIN.iter().rev().map(|row| row.to_vec()).collect();
+    for given in other.problem.filters[1..].iter_mut().map(given_mut) {
         given.gain *= 0.5;
         given.innovation_covariance *= 3.0;
     }
@@ -926,7 +947,7 @@ fn unmixed_modes_with_fixed_gains_stand_alone() {
         assert_ne!(a.mode_probabilities, b.mode_probabilities);
     }
     // The other reading does not stand alone.
-    scene.equations = Equations::fixed_gain();
+    scene.problem.interaction = Interaction::Imm;
     assert_ne!(scene.run()[0].updated[0].mean, run[0].updated[0].mean);
 }
 
@@ -934,9 +955,9 @@ fn unmixed_modes_with_fixed_gains_stand_alone() {
 #[test]
 fn the_two_readings_of_fixed_gains_agree_under_the_identity_transition() {
     let mut scene = fixed_gain_scene();
-    scene.problem.transition = identity_chain(3);
+    scene.problem.chain = identity_chain(3);
     let mixed = scene.run();
-    scene.equations = Equations::fixed_gain_unmixed();
+    scene.problem.interaction = Interaction::Unmixed;
     for (a, b) in mixed.iter().zip(&scene.run()) {
         assert_eq!(bits_of_step(a), bits_of_step(b), "step {}", a.step);
     }
@@ -948,9 +969,9 @@ fn identical_modes_with_fixed_gains_are_one_filter_for_any_transition_matrix() {
     let cyclic = vec![vec![0.0, 1.0, 0.0], vec![0.0, 0.0, 1.0], vec![1.0, 0.0, 0.0]];
     for chain in [CHAIN.map(|row| row.to_vec()).to_vec(), cyclic] {
         let mut scene = with_identical_modes(&fixed_gain_scene());
-        let given = scene.problem.fixed_gains.as_mut().unwrap();
-        *given = vec![given[0].clone(); 3];
-        scene.problem.transition = chain;
+        // One for all.
+        scene.problem.filters.truncate(1);
+        scene.problem.chain = chain;
         for (step, alone) in scene.run().iter().zip(&fixed_gain_run(&scene, 0)) {
             // Each step rounds an entry fewer than a hundred times, and the gains forget what was.
             let allowed = 100.0 * 30.0 * ROUNDOFF * alone.amax();
@@ -964,7 +985,6 @@ fn identical_modes_with_fixed_gains_are_one_filter_for_any_transition_matrix() {
 fn a_filter_with_fixed_gains_has_no_covariance_in_its_record() {
     let scene = fixed_gain_scene();
     let zero = scene.filter().unwrap();
-    let given = scene.problem.fixed_gains.as_ref().unwrap();
     for step in std::iter::once(zero.current()).chain(&scene.run()) {
         let modes = step.mixed.iter().chain(&step.predicted).chain(&step.updated);
         for estimate in modes.chain([&step.combined_prediction, &step.combined]) {
@@ -977,26 +997,639 @@ fn a_filter_with_fixed_gains_has_no_covariance_in_its_record() {
         assert!(step.combined.mean.iter().all(|entry| entry.is_finite()));
         for j in (0..3).filter(|_| step.step > 0) {
             let is_used = step.measurement.is_some();
-            assert_eq!(step.gains[j] == given[j].gain, is_used, "step {}", step.step);
-            assert_eq!(
-                step.innovation_covariances[j] == given[j].innovation_covariance,
-                is_used
-            );
+            let given = given(&scene.problem.filters[j]);
+            assert_eq!(step.gains.get(j), is_used.then_some(&given.gain), "step {}", step.step);
+            let covariance = is_used.then_some(&given.innovation_covariance);
+            assert_eq!(step.innovation_covariances.get(j), covariance, "step {}", step.step);
         }
+        assert!(step.cross_covariances.is_empty(), "step {}", step.step);
     }
 }
 
 /// The means of mode j's filter by itself.
 fn fixed_gain_run(scene: &Scene, j: usize) -> Vec<Vector4<f64>> {
-    let (h, mode) = (scene.problem.measurement.matrix(), &scene.problem.modes[j]);
-    let gain = scene.problem.fixed_gains.as_ref().unwrap()[j].gain;
+    let (h, mode) = (scene.problem.h().into_owned(), &scene.problem.modes[j]);
+    let gain = given(scene.problem.filter(j)).gain;
     let mut mean = scene.initial.modes[j].mean;
     let step = |z: &Option<Vector2<f64>>| {
-        let predicted = mode.transition * mean;
+        let predicted = mode.motion.of(&mean);
         mean = z.map_or(predicted, |z| predicted + gain * (z - h * predicted));
         mean
     };
     scene.measurements.iter().map(step).collect()
+}
+
+/// What a filter is given.
+fn given(filter: &Filter<f64, U4, U2>) -> &FixedGain<f64, U4, U2> {
+    let Update::Given(given) = &filter.update else {
+        panic!("a filter with a given gain");
+    };
+    given
+}
+
+/// As [`given`], to be changed.
+fn given_mut(filter: &mut Filter<f64, U4, U2>) -> &mut FixedGain<f64, U4, U2> {
+    let Update::Given(given) = &mut filter.update else {
+        panic!("a filter with a given gain");
+    };
+    given
+}
+
+// Other filters in other modes
+
+/// A filter with points for one of its two transforms and matrices for the other, both ways, and one with points of two rules.
+fn half_filters(rule: &str) -> [Filter<f64, U4, U2>; 3] {
+    let points = |name: &str| Transform::Points(rule_of(name));
+    let filter = |predict, update| Filter {
+        predict,
+        update: Update::By(update),
+    };
+    [
+        filter(Transform::Exact, points(rule)),
+        filter(points(rule), Transform::Exact),
+        filter(points(rule), points("cubature-3")),
+    ]
+}
+
+/// On a linear problem every transform has all moments right, so modes with different filters are modes with Kalman filters, up to the
+/// rounding of a run.
+#[test]
+fn with_linear_models_modes_of_any_filters_are_kalman_filters() {
+    let kalman = linear_scene().run();
+    for rule in RULES {
+        let [measured, moved, both] = half_filters(rule);
+        for filters in [
+            vec![measured.clone(), Filter::kalman(), Filter::kalman()],
+            vec![Filter::kalman(), both, measured.clone()],
+            vec![moved.clone(), measured, Filter::points(rule_of(rule))],
+            vec![moved],
+        ] {
+            let mut scene = linear_scene();
+            scene.problem.filters = filters;
+            let run = scene.run();
+            let apart = distance_of_runs(&run, &kalman);
+            assert!(apart <= rounding_of(&kalman), "{rule}: {apart}");
+            // Points are there where they are drawn, and nowhere else.
+            for step in &run {
+                for j in 0..3 {
+                    let [predict, update] = scene.problem.filter(j).rules();
+                    let count = |rule: Option<&Rule<f64, U4>>| rule.map_or(0, |rule| rule.points.len());
+                    assert_eq!(step.propagated_points[j].len(), count(predict), "{rule}, mode {j}");
+                    let is_measured = step.measurement.is_some();
+                    let measured_points = step.measured_points.get(j).map(Vec::len);
+                    assert_eq!(
+                        measured_points,
+                        is_measured.then_some(count(update)),
+                        "{rule}, mode {j}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// Matrices for the motion and points for the measurement are points for both: the motions are linear. Up to the rounding of a run.
+#[test]
+fn points_for_the_measurement_alone_are_points_for_both() {
+    for rule in RULES {
+        let scene = polar_scene(rule);
+        let run = scene.run();
+        let mut other = scene.clone();
+        let [measured, ..] = half_filters(rule);
+        other.problem.filters = vec![measured.clone(), Filter::points(rule_of(rule)), measured];
+        let apart = distance_of_runs(&other.run(), &run);
+        assert!(apart <= rounding_of(&run), "{rule}: {apart}");
+    }
+}
+
+/// Where no mode is left for another, each mode is its own filter and not its neighbour's, bit for bit; and in another order the answers
+/// come in that order.
+#[test]
+fn each_mode_has_its_own_filter() {
+    let [measured, moved, both] = half_filters("simplex-5");
+    let points = |rule| Filter::points(rule_of(rule));
+    for (scene, filters) in [
+        (linear_scene(), [Filter::kalman(), measured.clone(), both]),
+        (linear_scene(), [moved, Filter::kalman(), points("unscented")]),
+        (
+            polar_scene("cubature-5"),
+            [points("cubature-3"), measured, points("cubature-5")],
+        ),
+    ] {
+        let mut scene = scene;
+        scene.problem.filters = filters.to_vec();
+        let run = scene.run();
+        for (a, b) in with_modes(&scene, &[1, 0, 2]).run().iter().zip(&run) {
+            for (place, j) in [1, 0, 2].into_iter().enumerate() {
+                assert_eq!(bits_of_mode(a, place), bits_of_mode(b, j));
+            }
+        }
+        scene.problem.chain = identity_chain(3);
+        let run = scene.run();
+        for j in 0..3 {
+            for (step, plain) in run.iter().zip(&plain_run(&scene, j)) {
+                assert_eq!(
+                    bits_of(&step.updated[j]),
+                    bits_of(plain),
+                    "mode {j}, step {}",
+                    step.step
+                );
+            }
+        }
+    }
+}
+
+/// Read without mixed states the modes of every filter stand alone, bit for bit, for any chain.
+#[test]
+fn unmixed_modes_of_every_filter_stand_alone() {
+    for (name, mut scene) in all_scenes() {
+        scene.problem.interaction = Interaction::Unmixed;
+        let run = scene.run();
+        for j in 0..3 {
+            for (step, plain) in run.iter().zip(&plain_run(&scene, j)) {
+                assert_eq!(bits_of(&step.updated[j]), bits_of(plain), "{name}, mode {j}");
+            }
+        }
+        // The probabilities follow the chain all the same.
+        let first = along_the_chain(&scene.problem.chain, &scene.initial.mode_probabilities);
+        assert_eq!(run[0].predicted_mode_probabilities, first, "{name}");
+    }
+}
+
+// A problem that changes from step to step
+
+/// Problems of one state and with other steps, noises, sensors, chains and filters, all of filters with covariances or all without.
+fn changing_problems(scene: &Scene, filters: &[Vec<Filter<f64, U4, U2>>]) -> Vec<Problem<f64, U4, U2>> {
+    let mut problems = Vec::new();
+    for (k, filters) in filters.iter().cycle().take(30).enumerate() {
+        let mut problem = scene.problem.clone();
+        // Steps of ½, 1 and 2 s.
+        let interval = [0.5, 1.0, 2.0][k % 3];
+        let motions = [
+            constant_velocity(&interval),
+            coordinated_turn(&TURN_RATE, &interval),
+            coordinated_turn(&-TURN_RATE, &interval),
+        ];
+        for (mode, motion) in problem.modes.iter_mut().zip(motions) {
+            mode.motion = Motion::Linear(motion);
+            mode.noise = integrated_noise(&1.0, &interval);
+        }
+        match &mut problem.sensor {
+            Sensor::Linear(h) => h[(0, 1)] = [0.0, 0.25][k % 2],
+            Sensor::Polar { location, .. } => *location = [[0.0, 0.0], [500.0, -2000.0]][k % 2],
+            Sensor::Function { .. } => panic!("no scene of these has one"),
+        }
+        problem.measurement_noise *= [1.0, 2.0, 0.5, 4.0][k % 4];
+        if k % 5 == 4 {
+            problem.chain.reverse();
+        }
+        problem.filters.clone_from(filters);
+        problem.interaction = if k % 7 == 6 {
+            Interaction::Unmixed
+        } else {
+            Interaction::Imm
+        };
+        problems.push(problem);
+    }
+    problems
+}
+
+/// A filter that goes on with another problem is the filter of that problem, started from the estimates of the step before, bit for bit.
+/// Steps without a detection are among them.
+#[test]
+fn a_problem_that_changes_is_a_new_filter_from_the_last_estimates() {
+    let points = |rule| vec![Filter::points(rule_of(rule))];
+    let [measured, moved, both] = half_filters("cubature-5");
+    let kalman = || Filter::kalman();
+    let gains = fixed_gain_scene();
+    let mut reversed = gains.problem.filters.clone();
+    reversed.reverse();
+    for (name, scene, filters) in [
+        ("Kalman", linear_scene(), vec![vec![kalman()]]),
+        (
+            "linear",
+            linear_scene(),
+            vec![vec![kalman()], points("simplex-5"), vec![moved, kalman(), both]],
+        ),
+        (
+            "polar",
+            polar_scene("unscented"),
+            vec![points("unscented"), points("cubature-3"), vec![measured]],
+        ),
+        (
+            "converted",
+            converted_scene(Conversion::Standard, [0.0, 0.0]),
+            vec![
+                vec![Filter::converted(Conversion::Standard)],
+                points("cubature-5"),
+                vec![Filter::converted(Conversion::ModifiedUnbiased)],
+            ],
+        ),
+        (
+            "given",
+            gains.clone(),
+            vec![
+                gains.problem.filters.clone(),
+                reversed,
+                vec![gains.problem.filters[1].clone()],
+            ],
+        ),
+    ] {
+        let mut filter = scene.filter().unwrap();
+        let (mut states, detected) = (truth().into_iter().skip(1), &scene.measurements);
+        for (k, problem) in changing_problems(&scene, &filters).into_iter().enumerate() {
+            let z = problem.sensor.of(&states.next().unwrap());
+            let z = detected[k].map(|_| z + vector![10.0, 1e-3]);
+            let last = filter.current();
+            let mut initial = Initial {
+                modes: last.updated.clone(),
+                mode_probabilities: last.mode_probabilities.clone(),
+            };
+            if !problem.has_covariances() {
+                for estimate in &mut initial.modes {
+                    estimate.covariance.fill(0.0);
+                }
+            }
+            let mut anew = Imm::with_equations(problem.clone(), scene.equations, &initial).unwrap();
+            filter.change(problem).unwrap();
+            let expected = anew.step(z.as_ref()).unwrap();
+            let step = filter.step(z.as_ref()).unwrap();
+            assert_eq!(bits_of_step(step), bits_of_step(expected), "{name}, step {}", step.step);
+            assert_eq!((step.step, expected.step), (k + 1, 1));
+        }
+    }
+}
+
+/// To go on with the same problem is to go on.
+#[test]
+fn a_problem_that_changes_to_itself_changes_nothing() {
+    for (name, scene) in all_scenes() {
+        let mut filter = scene.filter().unwrap();
+        for (z, expected) in scene.measurements.iter().zip(scene.run()) {
+            filter.change(scene.problem.clone()).unwrap();
+            assert_eq!(
+                bits_of_step(filter.step(z.as_ref()).unwrap()),
+                bits_of_step(&expected),
+                "{name}"
+            );
+        }
+    }
+}
+
+// Formulas
+
+/// The scene of range and bearing with formulas in the places of its matrices and of its sensor, whose numbers they are given.
+fn in_formulas(scene: &Scene) -> Scene {
+    let mut other = scene.clone();
+    let (names, entries) = (["x", "vx", "y", "vy"], ["a", "b", "c", "d", "e", "f", "g", "h"]);
+    let moved = [
+        ("x", "x + a*vx + b*vy"),
+        ("vx", "c*vx + d*vy"),
+        ("y", "e*vx + y + f*vy"),
+        ("vy", "g*vx + h*vy"),
+    ];
+    let motion = Arc::new(Function::of_formulas(&names, &entries, &[], &[], &moved).unwrap());
+    for mode in &mut other.problem.modes {
+        let f = mode.motion.matrix().into_owned();
+        let given = (0..4).flat_map(|row| [f[(row, 1)], f[(row, 3)]]).collect();
+        mode.motion = Motion::Function {
+            function: motion.clone(),
+            given,
+        };
+    }
+    let seen = [("range", "sqrt(x*x + y*y)"), ("bearing", "atan2(y, x)")];
+    other.problem.sensor = Sensor::Function {
+        function: Function::of_formulas(&names, &[], &[], &[], &seen).unwrap().into(),
+        space: Space::new(vec![Component::number("range", "m"), Component::angle("bearing")])
+            .unwrap()
+            .into(),
+        given: vec![],
+    };
+    other
+}
+
+/// A motion and a sensor in formulas are the matrix and the sensor that they say, bit for bit: the sums are in the same order, and what a
+/// matrix adds besides is zero.
+#[test]
+fn a_scene_in_formulas_is_the_scene_itself() {
+    for rule in RULES {
+        let scene = polar_scene(rule);
+        for (a, b) in in_formulas(&scene).run().iter().zip(&scene.run()) {
+            assert_eq!(bits_of_step(a), bits_of_step(b), "{rule}, step {}", a.step);
+        }
+    }
+}
+
+// Sides that are known at run time
+
+/// A problem with sides in its types, to be run with sides that are known at run time, in numbers T.
+struct AtRunTime<T> {
+    /// The number of a double.
+    number: fn(f64) -> T,
+    /// The double that a number is.
+    double: fn(&T) -> f64,
+}
+
+impl<T: number::Real> AtRunTime<T> {
+    fn list(&self, numbers: &[f64]) -> Vec<T> {
+        numbers.iter().map(|number| (self.number)(*number)).collect()
+    }
+
+    fn vector<const R: usize>(&self, vector: &SVector<f64, R>) -> DVector<T> {
+        self.list(vector.as_slice()).into()
+    }
+
+    fn matrix<const R: usize, const C: usize>(&self, matrix: &SMatrix<f64, R, C>) -> DMatrix<T> {
+        DMatrix::from_fn(R, C, |row, column| (self.number)(matrix[(row, column)]))
+    }
+
+    fn rule<const N: usize>(&self, rule: &Rule<f64, Const<N>>) -> Rule<T, Dyn> {
+        Rule {
+            points: rule.points.iter().map(|point| self.vector(point)).collect(),
+            weights: self.list(&rule.weights),
+            covariance_weights: self.list(&rule.covariance_weights),
+        }
+    }
+
+    fn transform<const N: usize>(&self, transform: &Transform<f64, Const<N>>) -> Transform<T, Dyn> {
+        match transform {
+            Transform::Exact => Transform::Exact,
+            Transform::Points(rule) => Transform::Points(self.rule(rule)),
+        }
+    }
+
+    fn filter<const N: usize, const M: usize>(&self, filter: &Filter<f64, Const<N>, Const<M>>) -> Filter<T, Dyn, Dyn> {
+        Filter {
+            predict: self.transform(&filter.predict),
+            update: match &filter.update {
+                Update::By(update) => Update::By(self.transform(update)),
+                Update::Converted(conversion) => Update::Converted(*conversion),
+                Update::Given(given) => Update::Given(FixedGain {
+                    gain: self.matrix(&given.gain),
+                    innovation_covariance: self.matrix(&given.innovation_covariance),
+                }),
+            },
+        }
+    }
+
+    fn problem<const N: usize, const M: usize>(
+        &self,
+        problem: &Problem<f64, Const<N>, Const<M>>,
+    ) -> Problem<T, Dyn, Dyn> {
+        let mode = |mode: &Mode<f64, Const<N>>| Mode {
+            name: mode.name.clone(),
+            motion: match &mode.motion {
+                Motion::Linear(matrix) => Motion::Linear(self.matrix(matrix)),
+                Motion::Affine { matrix, offset } => Motion::Affine {
+                    matrix: self.matrix(matrix),
+                    offset: self.vector(offset),
+                },
+                Motion::Function { function, given } => Motion::Function {
+                    function: function.clone(),
+                    given: self.list(given),
+                },
+            },
+            noise: self.matrix(&mode.noise),
+        };
+        Problem {
+            modes: problem.modes.iter().map(mode).collect(),
+            filters: problem.filters.iter().map(|filter| self.filter(filter)).collect(),
+            interaction: problem.interaction,
+            chain: problem.chain.iter().map(|row| self.list(row)).collect(),
+            sensor: match &problem.sensor {
+                Sensor::Linear(h) => Sensor::Linear(self.matrix(h)),
+                Sensor::Polar {
+                    components,
+                    position,
+                    location,
+                } => Sensor::Polar {
+                    components: components.clone(),
+                    position: *position,
+                    location: location.map(self.number),
+                },
+                Sensor::Function { function, space, given } => Sensor::Function {
+                    function: function.clone(),
+                    space: space.clone(),
+                    given: self.list(given),
+                },
+            },
+            measurement_noise: self.matrix(&problem.measurement_noise),
+        }
+    }
+
+    fn initial<const N: usize>(&self, initial: &Initial<f64, Const<N>>) -> Initial<T, Dyn> {
+        let estimate = |estimate: &Gaussian<f64, Const<N>>| Gaussian {
+            mean: self.vector(&estimate.mean),
+            covariance: self.matrix(&estimate.covariance),
+        };
+        Initial {
+            modes: initial.modes.iter().map(estimate).collect(),
+            mode_probabilities: self.list(&initial.mode_probabilities),
+        }
+    }
+
+    /// Runs a problem with sides in its types in doubles, and with sides that are known at run time: every value of every step has the same
+    /// bits.
+    fn assert_same_bits<const N: usize, const M: usize>(
+        &self,
+        name: &str,
+        problem: &Problem<f64, Const<N>, Const<M>>,
+        initial: &Initial<f64, Const<N>>,
+        measurements: &[Option<SVector<f64, M>>],
+    ) {
+        let mut in_types = Imm::new(problem.clone(), initial).unwrap();
+        let mut at_run_time = Imm::new(self.problem(problem), &self.initial(initial)).unwrap();
+        let same = |a: &Step<f64, Const<N>, Const<M>>, b: &Step<T, Dyn, Dyn>| {
+            assert_eq!(
+                every_bit(a, |number| *number),
+                every_bit(b, self.double),
+                "{name}, step {}",
+                a.step
+            );
+        };
+        same(in_types.current(), at_run_time.current());
+        for z in measurements {
+            let carried = z.as_ref().map(|z| self.vector(z));
+            same(
+                in_types.step(z.as_ref()).unwrap(),
+                at_run_time.step(carried.as_ref()).unwrap(),
+            );
+        }
+    }
+}
+
+/// Doubles in random rounding: outside of a scope every operation gives what it gives in doubles.
+const UNPERTURBED: AtRunTime<RandomRounding> = AtRunTime {
+    number: RandomRounding::exact,
+    double: |number| number.value(),
+};
+
+/// Doubles as they are.
+const DOUBLES: AtRunTime<f64> = AtRunTime {
+    number: |number| number,
+    double: |number| *number,
+};
+
+/// Sides in types or known at run time are one text, and give the same bits: n = 4, every filter, in both numbers that are doubles.
+#[test]
+fn sides_known_at_run_time_give_the_same_bits_with_four_entries() {
+    let mut scenes = all_scenes();
+    scenes.push(("given".into(), fixed_gain_scene()));
+    for conversion in Conversion::ALL {
+        scenes.push((format!("{conversion:?}"), converted_scene(conversion, [300.0, -200.0])));
+    }
+    let mut of_many = polar_scene("cubature-3");
+    let [measured, _, both] = half_filters("simplex-5");
+    of_many.problem.filters = vec![measured, Filter::converted(Conversion::Standard), both];
+    scenes.push(("different filters".into(), of_many));
+    let mut unmixed = linear_scene();
+    unmixed.problem.interaction = Interaction::Unmixed;
+    scenes.push(("unmixed".into(), unmixed));
+    scenes.push(("formulas".into(), in_formulas(&polar_scene("cubature-5"))));
+    for (name, scene) in scenes {
+        let Scene {
+            problem,
+            initial,
+            measurements,
+            ..
+        } = scene;
+        UNPERTURBED.assert_same_bits(&name, &problem, &initial, &measurements);
+        DOUBLES.assert_same_bits(&name, &problem, &initial, &measurements);
+    }
+}
+
+/// The same with n = 8: position, velocity, acceleration and jerk along two axes. Products of so many columns are where a library of
+/// matrices sums plain doubles in an order of its own, and so only random rounding has the same bits. The second mode lacks the jerk, and
+/// knows it exactly.
+#[test]
+fn sides_known_at_run_time_give_the_same_bits_with_eight_entries() {
+    let (modes, initial) = (jerking_modes(), jerking_initial());
+    let polar = Sensor::Polar {
+        components: vec![PolarComponent::Range, PolarComponent::Bearing],
+        position: [0, 4],
+        location: [-300.0, 200.0],
+    };
+    let of_entry = |entry: bool| f64::from(u8::from(entry));
+    let h = SMatrix::<f64, 2, 8>::from_fn(|row, column| {
+        of_entry(column == 4 * row) + 0.125 * of_entry(column == 4 * row + 1)
+    });
+    let points = |rule: RuleName| Filter::points(rule.rule().unwrap());
+    for (name, sensor, filters) in [
+        ("linear, Kalman", Sensor::Linear(h), vec![Filter::kalman()]),
+        ("linear, points", Sensor::Linear(h), vec![points(RuleName::FifthDegree)]),
+        (
+            "polar, third and fifth degree",
+            polar.clone(),
+            vec![points(RuleName::ThirdDegree), points(RuleName::FifthDegree)],
+        ),
+        (
+            "polar, simplex and unscented",
+            polar.clone(),
+            vec![points(RuleName::Simplex), points(RuleName::Unscented(None))],
+        ),
+        (
+            "polar, converted",
+            polar,
+            vec![Filter::converted(Conversion::ModifiedUnbiased)],
+        ),
+    ] {
+        let variances = match &sensor {
+            Sensor::Linear(_) => vector![1600.0, 400.0],
+            _ => vector![1600.0, 49e-6],
+        };
+        let measure = |state: &Vector4<f64>| {
+            let state = SVector::<f64, 8>::from([state[0], state[1], 0.0, 0.0, state[2], state[3], 0.0, 0.0]);
+            sensor.of(&state) + vector![11.7, 0.003]
+        };
+        let mut measurements: Vec<_> = truth().iter().skip(1).map(|state| Some(measure(state))).collect();
+        measurements[7] = None;
+        let problem = Problem {
+            modes: modes.clone(),
+            filters,
+            interaction: Interaction::Imm,
+            chain: vec![vec![0.9, 0.1], vec![0.2, 0.8]],
+            sensor,
+            measurement_noise: SMatrix::from_diagonal(&variances),
+        };
+        UNPERTURBED.assert_same_bits(name, &problem, &initial, &measurements);
+    }
+}
+
+/// Constant jerk along both axes, and constant acceleration, which lacks the jerk. Steps of a second.
+fn jerking_modes() -> Vec<Mode<f64, U8>> {
+    let axis = matrix![
+        1.0, 1.0, 0.5, 1.0 / 6.0;
+        0.0, 1.0, 1.0, 0.5;
+        0.0, 0.0, 1.0, 1.0;
+        0.0, 0.0, 0.0, 1.0];
+    let input = vector![1.0 / 24.0, 1.0 / 6.0, 0.5, 1.0];
+    let without_jerk = |matrix: Matrix4<f64>| {
+        let mut kept = matrix;
+        kept.row_mut(3).fill(0.0);
+        kept.column_mut(3).fill(0.0);
+        kept
+    };
+    let on_both_axes = |x: Matrix4<f64>, y: Matrix4<f64>| {
+        let mut both = SMatrix::<f64, 8, 8>::zeros();
+        both.fixed_view_mut::<4, 4>(0, 0).copy_from(&x);
+        both.fixed_view_mut::<4, 4>(4, 4).copy_from(&y);
+        both
+    };
+    let noise = |variance: f64| input * input.transpose() * variance + Matrix4::identity() * (variance / 64.0);
+    vec![
+        Mode {
+            name: "constant jerk".into(),
+            motion: Motion::Linear(on_both_axes(axis, axis)),
+            noise: on_both_axes(noise(0.3), noise(0.7)),
+        },
+        Mode {
+            name: "constant acceleration".into(),
+            motion: Motion::Linear(on_both_axes(without_jerk(axis), without_jerk(axis))),
+            noise: on_both_axes(without_jerk(noise(0.1)), without_jerk(noise(0.2))),
+        },
+    ]
+}
+
+/// Two estimates of such a target with correlated entries; the second knows that there is no jerk.
+fn jerking_initial() -> Initial<f64, U8> {
+    let root = SMatrix::<f64, 8, 8>::from_fn(|row, column| {
+        let size = [100.0, 10.0, 3.0, 1.0][row % 4];
+        size * if row == column {
+            1.0
+        } else {
+            0.1 / (1.0 + row as f64 + 2.0 * column as f64)
+        }
+    });
+    let mut known = root;
+    for entry in [3, 7] {
+        known.row_mut(entry).fill(0.0);
+    }
+    let start = truth()[0];
+    let mean = SVector::from([
+        start[0] + 30.0,
+        start[1],
+        0.4,
+        0.0,
+        start[2] - 20.0,
+        start[3],
+        -0.3,
+        0.0,
+    ]);
+    // A product with its own transpose is symmetric up to rounding; the lower triangle is taken for both.
+    let covariance = |root: SMatrix<f64, 8, 8>| immaculate::matrix::mirrored(root * root.transpose());
+    Initial {
+        modes: vec![
+            Gaussian {
+                mean,
+                covariance: covariance(root),
+            },
+            Gaussian {
+                mean: mean.map(|entry| entry * 1.001),
+                covariance: covariance(known),
+            },
+        ],
+        mode_probabilities: vec![0.625, 0.375],
+    }
 }
 
 // Helpers
@@ -1008,7 +1641,7 @@ fn MIRROR() -> Matrix4<f64> {
 }
 
 /// The estimate in the mirror.
-fn mirror_image(estimate: &Gaussian<f64, 4>) -> Gaussian<f64, 4> {
+fn mirror_image(estimate: &Gaussian<f64, U4>) -> Gaussian<f64, U4> {
     Gaussian {
         mean: MIRROR() * estimate.mean,
         covariance: MIRROR() * estimate.covariance * MIRROR(),
@@ -1031,7 +1664,7 @@ fn mirrored(scene: &Scene) -> Scene {
 }
 
 /// The steps of a run whose scene was turned by half a turn, turned back.
-fn turned_back(run: &[Step<f64, 4, 2>]) -> Vec<Step<f64, 4, 2>> {
+fn turned_back(run: &[Step<f64, U4, U2>]) -> Vec<Step<f64, U4, U2>> {
     let mut run = run.to_vec();
     for step in &mut run {
         let modes = step
@@ -1049,12 +1682,13 @@ fn turned_back(run: &[Step<f64, 4, 2>]) -> Vec<Step<f64, 4, 2>> {
 /// The scene in units of length that are `1/scale` metres.
 fn in_units(scene: &Scene, scale: f64) -> Scene {
     let mut other = scene.clone();
-    let lengths: [f64; 2] = match &mut other.problem.measurement {
-        Measurement::Linear(_) => [scale, scale],
-        Measurement::Polar { sensor, .. } | Measurement::Converted { sensor, .. } => {
-            *sensor = sensor.map(|coordinate| coordinate * scale);
+    let lengths: [f64; 2] = match &mut other.problem.sensor {
+        Sensor::Linear(_) => [scale, scale],
+        Sensor::Polar { location, .. } => {
+            *location = location.map(|coordinate| coordinate * scale);
             [scale, 1.0]
         }
+        Sensor::Function { .. } => panic!("no scene of these has one"),
     };
     let lengths = Vector2::from(lengths);
     for mode in &mut other.problem.modes {
@@ -1074,7 +1708,7 @@ fn in_units(scene: &Scene, scale: f64) -> Scene {
 }
 
 /// The estimate in units of length that are `1/scale` of its own.
-fn scaled(estimate: &Gaussian<f64, 4>, scale: f64) -> Gaussian<f64, 4> {
+fn scaled(estimate: &Gaussian<f64, U4>, scale: f64) -> Gaussian<f64, U4> {
     Gaussian {
         mean: estimate.mean * scale,
         covariance: estimate.covariance * (scale * scale),
@@ -1088,11 +1722,14 @@ fn with_modes(scene: &Scene, order: &[usize]) -> Scene {
     other.problem.modes = order.iter().map(pick).collect();
     other.initial.modes = order.iter().map(|&j| scene.initial.modes[j].clone()).collect();
     other.initial.mode_probabilities = vec![1.0];
-    other.problem.transition = identity_chain(1);
+    other.problem.chain = identity_chain(1);
+    if scene.problem.filters.len() > 1 {
+        other.problem.filters = order.iter().map(|&j| scene.problem.filters[j].clone()).collect();
+    }
     if order.len() == scene.problem.modes.len() {
-        let chain = &scene.problem.transition;
+        let chain = &scene.problem.chain;
         let row = |&i: &usize| order.iter().map(|&j| chain[i][j]).collect();
-        other.problem.transition = order.iter().map(row).collect();
+        other.problem.chain = order.iter().map(row).collect();
         let probabilities = &scene.initial.mode_probabilities;
         other.initial.mode_probabilities = order.iter().map(|&j| probabilities[j]).collect();
     }
@@ -1134,36 +1771,70 @@ fn transposed(chain: &[Vec<f64>]) -> Vec<Vec<f64>> {
 }
 
 /// All bits of a step.
-fn bits_of_step(step: &Step<f64, 4, 2>) -> Vec<u64> {
-    let mut all = bits(&step.mode_probabilities);
-    all.extend(bits(&step.predicted_mode_probabilities));
-    all.extend(bits([&step.log_evidence]));
-    all.extend(bits_of(&step.combined_prediction));
-    all.extend(bits_of(&step.combined));
-    for j in 0..step.updated.len() {
-        all.extend(bits_of_mode(step, j));
-        all.extend(bits(&step.mixing_probabilities[j]));
+fn bits_of_step(step: &Step<f64, U4, U2>) -> Vec<u64> {
+    every_bit(step, |number| *number)
+}
+
+/// The bits of all values of a step, where `double` gives the double that a number is: those of the table, the points, the evidence.
+fn every_bit<T: Field, N: Dim, M: Dim>(step: &Step<T, N, M>, double: impl Fn(&T) -> f64) -> Vec<u64>
+where
+    Shapes: Holds<N, M>,
+{
+    let mut numbers = vec![step.evidence.clone(), step.log_evidence.clone()];
+    numbers.extend(step.relative_likelihoods.iter().cloned());
+    for quantity in Quantity::ALL {
+        let modes = if quantity.is_of_mode() { step.updated.len() } else { 1 };
+        for j in 0..modes {
+            // A value that is not there is told from one that is: its shape is a number too.
+            let values = step.values(quantity, j).unwrap_or_default();
+            numbers.push(T::integer(i64::try_from(values.len()).unwrap()));
+            numbers.extend(values);
+        }
+    }
+    for points in [&step.mixed_points, &step.propagated_points, &step.predicted_points] {
+        numbers.extend(points.iter().flatten().flat_map(|point| point.iter().cloned()));
+    }
+    numbers.extend(
+        step.measured_points
+            .iter()
+            .flatten()
+            .flat_map(|point| point.iter().cloned()),
+    );
+    let doubles: Vec<f64> = numbers.iter().map(double).collect();
+    bits(&doubles)
+}
+
+/// The bits of all values of a step for one mode, of those that come from a measurement too where there is one.
+fn bits_of_mode(step: &Step<f64, U4, U2>, j: usize) -> Vec<u64> {
+    let mut all = Vec::new();
+    for quantity in Quantity::ALL {
+        // Mixing probabilities are told by the place of every other mode.
+        if quantity.is_of_mode() && quantity != Quantity::MixingProbabilities {
+            let values = step.values(quantity, j).unwrap_or_default();
+            all.push(values.len() as u64);
+            all.extend(bits(&values));
+        }
     }
     all
 }
 
 /// The updated estimates of mode j's filter by itself: no mixing, no probabilities, written out from the filter's equations.
-fn plain_run(scene: &Scene, j: usize) -> Vec<Gaussian<f64, 4>> {
+fn plain_run(scene: &Scene, j: usize) -> Vec<Gaussian<f64, U4>> {
     let problem = &scene.problem;
     let mode = &problem.modes[j];
     let mut estimate = scene.initial.modes[j].clone();
     let mut run = Vec::new();
     for z in &scene.measurements {
         let Gaussian { mean, covariance } = &estimate;
-        let predicted = match &problem.rule {
-            None => Gaussian {
-                mean: kalman::predicted_mean(&mode.transition, mean),
-                covariance: kalman::predicted_covariance(&mode.transition, covariance, &mode.noise),
+        let predicted = match &problem.filter(j).predict {
+            Transform::Exact => Gaussian {
+                mean: kalman::predicted_mean(&mode.motion.matrix(), mean),
+                covariance: kalman::predicted_covariance(&mode.motion.matrix(), covariance, &mode.noise),
             },
-            Some(rule) => {
+            Transform::Points(rule) => {
                 let moved: Vec<_> = points_of(rule, &estimate)
                     .iter()
-                    .map(|point| cubature::propagated_point(&mode.transition, point))
+                    .map(|point| cubature::propagated_point(&mode.motion.matrix(), point))
                     .collect();
                 let mean = cubature::weighted_mean(&rule.weights, &moved);
                 let weights = &rule.covariance_weights;
@@ -1175,7 +1846,7 @@ fn plain_run(scene: &Scene, j: usize) -> Vec<Gaussian<f64, 4>> {
         };
         estimate = match z {
             None => predicted,
-            Some(z) => plain_update(scene, &predicted, z),
+            Some(z) => plain_update(scene, j, &predicted, z),
         };
         run.push(estimate.clone());
     }
@@ -1183,31 +1854,34 @@ fn plain_run(scene: &Scene, j: usize) -> Vec<Gaussian<f64, 4>> {
 }
 
 /// One filter's update.
-fn plain_update(scene: &Scene, predicted: &Gaussian<f64, 4>, z: &Vector2<f64>) -> Gaussian<f64, 4> {
-    let measurement = &scene.problem.measurement;
+fn plain_update(scene: &Scene, j: usize, predicted: &Gaussian<f64, U4>, z: &Vector2<f64>) -> Gaussian<f64, U4> {
+    let sensor = &scene.problem.sensor;
     let noise = &scene.problem.measurement_noise;
-    let (expected, innovation_covariance, cross_covariance) = match &scene.problem.rule {
-        None => {
-            let h = measurement.matrix();
+    let Update::By(transform) = &scene.problem.filter(j).update else {
+        panic!("a filter that computes its gain from the measurement as it is");
+    };
+    let (expected, innovation_covariance, cross_covariance) = match transform {
+        Transform::Exact => {
+            let h = scene.problem.h();
             (
-                h * predicted.mean,
+                h.as_ref() * predicted.mean,
                 kalman::innovation_covariance(&h, &predicted.covariance, noise),
                 kalman::cross_covariance(&predicted.covariance, &h),
             )
         }
-        Some(rule) => {
+        Transform::Points(rule) => {
             let points = points_of(rule, predicted);
-            let values: Vec<_> = points.iter().map(|point| measurement.of(point)).collect();
-            let centre = measurement.of(&predicted.mean);
-            let expected = measurement.mean(&rule.weights, &values, &centre);
+            let values: Vec<_> = points.iter().map(|point| sensor.of(point)).collect();
+            let centre = sensor.of(&predicted.mean);
+            let expected = sensor.mean(&rule.weights, &values, &centre);
             let weights = &rule.covariance_weights;
-            let s = cubature::innovation_covariance(measurement, weights, &values, &expected, noise);
+            let s = cubature::innovation_covariance(sensor, weights, &values, &expected, noise);
             let mean = &predicted.mean;
-            let c = cubature::cross_covariance(measurement, weights, &points, mean, &values, &expected);
+            let c = cubature::cross_covariance(sensor, weights, &points, mean, &values, &expected);
             (expected, s, c)
         }
     };
-    let innovation = measurement.difference(z, &expected);
+    let innovation = sensor.difference(z, &expected);
     let gain = update::gain(&cross_covariance, &ldl(&innovation_covariance));
     Gaussian {
         mean: update::updated_mean(&predicted.mean, &gain, &innovation),
@@ -1216,7 +1890,7 @@ fn plain_update(scene: &Scene, predicted: &Gaussian<f64, 4>, z: &Vector2<f64>) -
 }
 
 /// The rule's points for an estimate.
-fn points_of(rule: &Rule<f64, 4>, estimate: &Gaussian<f64, 4>) -> Vec<SVector<f64, 4>> {
+fn points_of(rule: &Rule<f64, U4>, estimate: &Gaussian<f64, U4>) -> Vec<SVector<f64, 4>> {
     let root = cholesky(&estimate.covariance).expect("a covariance");
     let at = |xi| cubature::point(&root, xi, &estimate.mean);
     rule.points.iter().map(at).collect()

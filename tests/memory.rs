@@ -11,7 +11,6 @@ mod common;
 use common::program::{error_of, immaculate};
 use immaculate::oracle::case;
 use immaculate::oracle::problem::{FilterFile, ProblemFile};
-use immaculate::oracle::setup::Setup;
 use serde_json::json;
 use std::io::{BufRead, BufReader, Write};
 use std::path::PathBuf;
@@ -43,9 +42,9 @@ fn a_million_steps_take_no_more_memory_than_a_thousand() {
         assert!(own.status.success(), "{}", String::from_utf8_lossy(&own.stdout));
         return;
     }
-    let setup: Setup<f64, 1, 1> = small().setup_in_doubles().unwrap();
+    let setup = small().setup_in_doubles().unwrap();
     let mut filter = setup.filter();
-    let z = setup.measurements[0].unwrap();
+    let z = setup.measurements[0].clone().unwrap();
     let mut run = |steps: usize| {
         for _ in 0..steps {
             filter.step(Some(&z)).unwrap();

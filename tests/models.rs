@@ -13,9 +13,9 @@ use immaculate::model::motion::{
 };
 use immaculate::model::registry::{Example, ListedComponent, Model, ModelKind, model, models};
 use immaculate::model::space::{Component, ComponentKind, Space};
-use immaculate::model::{Measurement, PolarComponent, acceleration, wiener};
+use immaculate::model::{PolarComponent, Sensor, acceleration, wiener};
 use immaculate::number::{Dual, Enclosure, Field, Rational, RationalFunction, Real};
-use nalgebra::{SMatrix, SVector, matrix};
+use nalgebra::{SMatrix, SVector, U1, U2, U4, matrix};
 use num_traits::Zero;
 use std::collections::BTreeSet;
 
@@ -640,19 +640,19 @@ fn turns_are_the_plain_functions() {
 #[test]
 fn measurements_are_the_plain_function_to_the_bit() {
     use PolarComponent::{Bearing, Range};
-    let sensor = [5.0, -2.0];
+    let location = [5.0, -2.0];
     let given = [("sensor_x", Rational::integer(5)), ("sensor_y", Rational::integer(-2))];
-    let polar = |components| Measurement::<f64, 4, 1>::Polar {
+    let polar = |components: Vec<PolarComponent>| Sensor::<f64, U4, U1>::Polar {
         components,
         position: [0, 2],
-        sensor,
+        location,
     };
-    let both = Measurement::<f64, 4, 2>::Polar {
-        components: [Range, Bearing],
+    let both = Sensor::<f64, U4, U2>::Polar {
+        components: vec![Range, Bearing],
         position: [0, 2],
-        sensor,
+        location,
     };
-    let linear = Measurement::<f64, 4, 2>::Linear(matrix![1.0, 0.0, 0.0, 0.0; 0.0, 0.0, 1.0, 0.0]);
+    let linear = Sensor::<f64, U4, U2>::Linear(matrix![1.0, 0.0, 0.0, 0.0; 0.0, 0.0, 1.0, 0.0]);
     for state in [
         [0.0, 1.0, 10.0, 2.0],
         [5.0, 0.0, 3.0, 0.0],
@@ -667,11 +667,11 @@ fn measurements_are_the_plain_function_to_the_bit() {
         let (space, z) = of("range-bearing", &given);
         assert_eq!(z, both.of(&vector).as_slice());
         assert_eq!([0, 1].map(|part| space.is_angle(part)), [false, true]);
-        assert_eq!(of("range", &given).1, polar([Range]).of(&vector).as_slice());
-        assert_eq!(of("bearing", &given).1, polar([Bearing]).of(&vector).as_slice());
+        assert_eq!(of("range", &given).1, polar(vec![Range]).of(&vector).as_slice());
+        assert_eq!(of("bearing", &given).1, polar(vec![Bearing]).of(&vector).as_slice());
         assert_eq!(of("position", &[]).1, linear.of(&vector).as_slice());
         // From another place it is another bearing.
-        assert_ne!(of("bearing", &[]).1, polar([Bearing]).of(&vector).as_slice());
+        assert_ne!(of("bearing", &[]).1, polar(vec![Bearing]).of(&vector).as_slice());
     }
 }
 

@@ -11,7 +11,8 @@ use immaculate::filter::cubature::{point, propagated_point, weighted_covariance,
 use immaculate::filter::raw::{raw_covariance, raw_second_moment};
 use immaculate::filter::{kalman, update};
 use immaculate::gaussian::{Gaussian, log_density, mixture_covariance, mixture_mean};
-use immaculate::imm::printed::{cubature_with_likelihood_21, log_density_21, log_density_57, mode_probability_22};
+use immaculate::imm::Equations;
+use immaculate::imm::printed::{log_density_21, log_density_57, mode_probability_22};
 use immaculate::imm::probability::{
     evidence, mixing_probability, mode_probability, predicted_mode_probability, relative_likelihood,
 };
@@ -20,13 +21,14 @@ use immaculate::model::acceleration::{
     acceleration_response, constant_acceleration, embedded_constant_velocity, embedded_velocity_response,
     position_matrix, response_noise,
 };
-use immaculate::model::{Measurement, PolarComponent};
+use immaculate::model::{PolarComponent, Sensor};
 use immaculate::number::{Field, Rational, Real, Surd};
 use immaculate::rule::Rule;
 use immaculate::rule::fifth_degree::{diagonals_minus, diagonals_plus, fifth_degree};
 use immaculate::rule::third_degree::third_degree;
 use nalgebra::{
-    Matrix1, Matrix2, Matrix3, Matrix4, SMatrix, SVector, Vector1, Vector2, Vector3, Vector4, matrix, vector,
+    Matrix1, Matrix2, Matrix3, Matrix4, SMatrix, SVector, U1, U2, U3, U4, Vector1, Vector2, Vector3, Vector4, matrix,
+    vector,
 };
 use num_traits::Zero;
 use std::f64::consts::PI;
@@ -37,7 +39,7 @@ use std::f64::consts::PI;
 #[test]
 fn printed_predicted_covariance_is_a_raw_second_moment_without_noise() {
     // The numbers of the erratum: a scalar that stays where it is, prior mean 3 and variance 1, Q = 2.
-    let rule = Rule::<Surd, 1>::from_exact(&third_degree(1).unwrap()).unwrap();
+    let rule = Rule::<Surd, U1>::from_exact(&third_degree(1).unwrap()).unwrap();
     let points: Vec<_> = rule
         .points
         .iter()
@@ -53,7 +55,7 @@ fn printed_predicted_covariance_is_a_raw_second_moment_without_noise() {
     }
 
     // In general the printed form is too large by x̂ x̂ᵀ − Q: here for the fifth-degree rule, with a motion.
-    let rule = Rule::<Surd, 3>::from_exact(&fifth_degree(3).unwrap()).unwrap();
+    let rule = Rule::<Surd, U3>::from_exact(&fifth_degree(3).unwrap()).unwrap();
     let root = matrix![2, 0, 0; 1, 3, 0; -1, 2, 1].map(whole);
     let motion = matrix![1, 1, 0; 0, 1, -2; 3, 0, 1].map(whole);
     let noise = matrix![2, 1, 0; 1, 2, 0; 0, 0, 5].map(whole);
@@ -91,7 +93,7 @@ fn printed_upper_limit_counts_points_that_do_not_exist() {
 
     // With as many points as there are, (47) is what is missing of the covariance: (45) with h(x) = x gives P + R.
     let n = 4;
-    let rule = Rule::<Surd, 4>::from_exact(&fifth_degree(n).unwrap()).unwrap();
+    let rule = Rule::<Surd, U4>::from_exact(&fifth_degree(n).unwrap()).unwrap();
     let first_diagonal = 1 + 2 * n;
     let sum_up_to = |limit: usize| -> Option<SMatrix<Surd, 4, 4>> {
         // P_zz1 of (46); the centre adds nothing, since it is the origin here.
@@ -178,7 +180,7 @@ fn printed_measurement_adds_noise_to_the_matrix() {
     assert_eq!(measurement(&here), vector![1003, 498].map(whole_rational));
     assert_eq!(measurement(&there), vector![-297, 798].map(whole_rational));
     // And that is what the crate measures.
-    let linear = Measurement::Linear(h.map(|entry| entry.to_f64()));
+    let linear = Sensor::Linear(h.map(|entry| entry.to_f64()));
     assert_eq!(linear.of(&here.map(|entry| entry.to_f64())), vector![1000.0, 500.0]);
 }
 
@@ -233,7 +235,7 @@ fn printed_likelihood_exponent_squares_the_determinant() {
 fn printed_likelihood_exponent_moves_probability_to_the_smaller_covariance() {
     let corrected = polar_scene("simplex-5");
     let mut printed = corrected.clone();
-    printed.equations = cubature_with_likelihood_21();
+    printed.equations = Equations::standard().with_likelihood_21();
     let corrected = &corrected.run()[0];
     let printed = &printed.run()[0];
     let covariances = &corrected.innovation_covariances;
@@ -280,10 +282,10 @@ fn printed_normaliser_makes_the_likelihood_cancel() {
 /// liu2017 (31): tan⁻¹(y/x) has the same value for opposite directions.
 #[test]
 fn plain_arctangent_confuses_opposite_quadrants() {
-    let measurement = Measurement::<f64, 2, 1>::Polar {
-        components: [PolarComponent::Bearing],
+    let measurement = Sensor::<f64, U2, U1>::Polar {
+        components: vec![PolarComponent::Bearing],
         position: [0, 1],
-        sensor: [0.0, 0.0],
+        location: [0.0, 0.0],
     };
     let printed = |state: &Vector2<f64>| libm::atan(state[1] / state[0]);
     let corrected = |state: &Vector2<f64>| measurement.of(state)[0];
@@ -317,10 +319,10 @@ fn plain_arctangent_confuses_opposite_quadrants() {
 /// sustika2015 (3): tan⁻¹(y/x) where the paper's target starts and flies.
 #[test]
 fn printed_arctangent_converts_the_first_point_to_the_opposite_one() {
-    let measurement = Measurement::<f64, 2, 2>::Polar {
-        components: [PolarComponent::Range, PolarComponent::Bearing],
+    let measurement = Sensor::<f64, U2, U2>::Polar {
+        components: vec![PolarComponent::Range, PolarComponent::Bearing],
         position: [0, 1],
-        sensor: [0.0, 0.0],
+        location: [0.0, 0.0],
     };
     let corrected = |place: &Vector2<f64>| measurement.of(place);
     let printed = |place: &Vector2<f64>| vector![measurement.of(place)[0], libm::atan(place[1] / place[0])];

@@ -10,12 +10,12 @@ use immaculate::gaussian::{Gaussian, log_density, mixture_covariance, mixture_me
 use immaculate::matrix::{cholesky, is_positive_semidefinite, is_symmetric, ldl, log_determinant};
 use immaculate::model::angle::wrap;
 use immaculate::model::motion::{constant_velocity, coordinated_turn};
-use immaculate::model::{Measurement, PolarComponent};
+use immaculate::model::{PolarComponent, Sensor};
 use immaculate::number::{Field, Rational, Real, Roots, Surd};
 use immaculate::rule::unscented::{Parameters, unscented, unscented_in};
 use immaculate::rule::{Rule, RuleName};
 use immaculate::statistics::fit_error::{FitForm, percentage_fit_error, position_fit_error};
-use nalgebra::{SMatrix, SVector, Vector3, vector};
+use nalgebra::{Const, SMatrix, SVector, U2, U3, U4, Vector3, vector};
 use num_traits::Zero;
 use proptest::prelude::*;
 use quickcheck::QuickCheck;
@@ -169,10 +169,10 @@ fn the_bearing_of_a_target_straight_to_the_left_is_half_a_turn() {
 /// Components may come in any order, and a bearing alone is a measurement too.
 #[test]
 fn the_components_of_a_polar_measurement_come_as_they_are_named() {
-    let swapped = Measurement::<f64, 4, 2>::Polar {
-        components: [PolarComponent::Bearing, PolarComponent::Range],
+    let swapped = Sensor::<f64, U4, U2>::Polar {
+        components: vec![PolarComponent::Bearing, PolarComponent::Range],
         position: [2, 0],
-        sensor: [1.0, 1.0],
+        location: [1.0, 1.0],
     };
     // Seen from (1, 1) the position (x, y) = (entry 2, entry 0) = (1, 3) is two metres to the north.
     let state = vector![3.0, 7.0, 1.0, 7.0];
@@ -446,7 +446,7 @@ proptest! {
 }
 
 /// Weights that sum to one up to rounding, and estimates of different means and covariances.
-fn mixtures() -> impl Strategy<Value = (Vec<f64>, Vec<Gaussian<f64, 3>>)> {
+fn mixtures() -> impl Strategy<Value = (Vec<f64>, Vec<Gaussian<f64, U3>>)> {
     let component = (
         [-100.0..100.0_f64, -100.0..100.0, -100.0..100.0],
         roots_of_covariances(),
@@ -528,7 +528,7 @@ fn exact_expectation<const N: usize>(forms: &Forms<N>, mean: &SVector<i32, N>, r
 
 /// The rule's expectation of the product of the forms, with the points that a filter draws.
 fn rule_expectation<T: Roots, const N: usize>(
-    rule: &Rule<T, N>,
+    rule: &Rule<T, Const<N>>,
     forms: &Forms<N>,
     mean: &SVector<i32, N>,
     root: &SMatrix<i32, N, N>,
@@ -591,7 +591,7 @@ fn check_exact_expectation<const N: usize>(
 }
 
 /// The rule of a name, in surds.
-fn rule_of_surds<const N: usize>(name: &str) -> Rule<Surd, N> {
+fn rule_of_surds<const N: usize>(name: &str) -> Rule<Surd, Const<N>> {
     let exact = name.parse::<RuleName>().unwrap().exact(N).unwrap();
     Rule::from_exact(&exact).unwrap()
 }
@@ -601,7 +601,7 @@ fn rule_of_surds<const N: usize>(name: &str) -> Rule<Surd, N> {
 /// one for each of the L points and one of the weight: (degree · (4N + 4) + L + 2) u of Σ |w| Π (Σ |a| |x|₊ + |b|), where |x|₊ is
 /// Σ |S| |ξ| + |x̂|.
 fn check_expectation_in_doubles<const N: usize>(
-    rules: &[(&str, usize, Rule<f64, N>)],
+    rules: &[(&str, usize, Rule<f64, Const<N>>)],
     (forms, mean, root): &(Forms<N>, SVector<i32, N>, SMatrix<i32, N, N>),
 ) -> Result<(), TestCaseError> {
     let expected = exact_expectation(forms, mean, root).to_f64();
@@ -662,7 +662,7 @@ proptest! {
 }
 
 /// The rules in doubles, with their degrees; the product rule too, where its 5ⁿ points are not too many to be quick.
-fn rules_in_doubles<const N: usize>() -> Vec<(&'static str, usize, Rule<f64, N>)> {
+fn rules_in_doubles<const N: usize>() -> Vec<(&'static str, usize, Rule<f64, Const<N>>)> {
     DEGREES
         .into_iter()
         .chain([("gauss-hermite-5", 9)])
@@ -713,11 +713,11 @@ fn rules_are_wrong_one_degree_above_their_own() {
 // Helpers
 
 /// Range and bearing of [x, ẋ, y, ẏ].
-fn range_bearing(sensor: [f64; 2]) -> Measurement<f64, 4, 2> {
-    Measurement::Polar {
-        components: [PolarComponent::Range, PolarComponent::Bearing],
+fn range_bearing(location: [f64; 2]) -> Sensor<f64, U4, U2> {
+    Sensor::Polar {
+        components: vec![PolarComponent::Range, PolarComponent::Bearing],
         position: [0, 2],
-        sensor,
+        location,
     }
 }
 
@@ -736,9 +736,9 @@ fn the_unscented_rule_of_doubles_is_the_exact_one_rounded() {
             beta: exact_number(beta),
             kappa: exact_number(kappa),
         };
-        let exact = Rule::<f64, 4>::from_exact(&unscented(4, &parameters).unwrap()).unwrap();
+        let exact = Rule::<f64, U4>::from_exact(&unscented(4, &parameters).unwrap()).unwrap();
         let double = |(p, q): (i64, i64)| f64::ratio(p, q);
-        let rounded = unscented_in::<f64, 4>(&double(alpha), &double(beta), &double(kappa)).unwrap();
+        let rounded = unscented_in(U4, &double(alpha), &double(beta), &double(kappa)).unwrap();
         assert_eq!(exact.points.len(), rounded.points.len());
         let near = |a: f64, b: f64| (a - b).abs() <= 8.0 * f64::EPSILON * a.abs().max(1.0);
         for (exact, rounded) in exact.points.iter().zip(&rounded.points) {

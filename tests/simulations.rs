@@ -7,8 +7,8 @@
 // What is exact is compared exactly.
 #![allow(clippy::float_cmp)]
 
-use immaculate::imm::printed::cubature_with_likelihood_21;
-use immaculate::model::{Conversion, Measurement, PolarComponent};
+use immaculate::imm::Equations;
+use immaculate::model::{Conversion, PolarComponent, Sensor};
 use immaculate::paper::comparison::Quantity;
 use immaculate::paper::derbez2000::contestants::Coordinates;
 use immaculate::paper::derbez2000::contestants::Noise as Variance;
@@ -29,7 +29,7 @@ use immaculate::paper::{Effort, Paper, liu2017, sustika2015, zhu2016};
 use immaculate::rule::RuleName;
 use immaculate::statistics::consistency::{nees, nis};
 use immaculate::statistics::fit_error::FitForm;
-use nalgebra::{Matrix4, Matrix6, Vector2, Vector3, Vector4, Vector6};
+use nalgebra::{Matrix4, Matrix6, U4, Vector2, Vector3, Vector4, Vector6};
 use std::collections::BTreeSet;
 use std::fmt::Debug;
 use std::time::Duration;
@@ -84,7 +84,7 @@ fn every_alternative_of_zhu2016_means_what_its_sentence_says() {
         |choices| zhu2016::scenario(choices).unwrap(),
         &[
             ("measurement", "equal-noise", |s, d| {
-                s.measurement == d.measurement && variances(s) == [20.0, 20.0]
+                s.sensor == d.sensor && variances(s) == [20.0, 20.0]
             }),
             ("measurement", "range-bearing", |s, _| {
                 is_polar(s) && variances(s) == [20.0, 1e-8]
@@ -107,7 +107,7 @@ fn every_alternative_of_zhu2016_means_what_its_sentence_says() {
             ("initial-probabilities", "stationary", |s, _| {
                 // μ Π = μ, each term rounded a few times.
                 let mu = &s.contestants[0].initial_probabilities;
-                let chain = &s.contestants[0].problem.transition;
+                let chain = &s.contestants[0].problem.chain;
                 let next = |j: usize| (0..3).map(|i| mu[i] * chain[i][j]).sum::<f64>();
                 (0..3).all(|j| (next(j) - mu[j]).abs() < 1e-15) && s.contestants[3].initial_probabilities == [1.0]
             }),
@@ -135,7 +135,7 @@ fn every_alternative_of_zhu2016_means_what_its_sentence_says() {
             }),
             ("single-model", "constant-velocity-ten-times-noise", |s, d| {
                 let (mode, default) = (&s.contestants[3].problem.modes[0], &d.contestants[3].problem.modes[0]);
-                mode.transition == default.transition && mode.noise == default.noise * 10.0
+                mode.motion == default.motion && mode.noise == default.noise * 10.0
             }),
             ("omtm-imm", "omitted", |s, d| names(s) == names(d)[..4]),
             ("pairing", "unpaired", |s, _| !s.paired),
@@ -179,7 +179,7 @@ fn every_alternative_of_liu2017_means_what_its_sentence_says() {
             ("likelihood", "printed", |s, d| {
                 let draw = d.draw(&mut Generator::new(1, 0));
                 let printed = Contestant {
-                    equations: cubature_with_likelihood_21(),
+                    equations: Equations::standard().with_likelihood_21(),
                     ..d.contestants[0].clone()
                 };
                 let errors = |contestant: &Contestant| track(contestant, &draw).errors;
@@ -821,8 +821,8 @@ fn a_draw_takes_its_numbers_in_the_stated_order() {
             // Some 10⁴ m and a radius of some 5000 m, in a dozen roundings.
             assert!((draw.truth[k] - expected).amax() < 1e-9, "{name}, step {k}");
             state = draw.truth[k];
-            let seen = match scenario.measurement {
-                Measurement::Linear(_) => Vector2::new(state[0], state[2]),
+            let seen = match scenario.sensor {
+                Sensor::Linear(_) => Vector2::new(state[0], state[2]),
                 _ => Vector2::new(state[0].hypot(state[2]), state[2].atan2(state[0])),
             };
             let noise = scenario
@@ -1132,17 +1132,14 @@ fn variances(scenario: &Scenario) -> [f64; 2] {
 }
 
 fn is_polar(scenario: &Scenario) -> bool {
-    let from_origin = Measurement::Polar {
-        components: [PolarComponent::Range, PolarComponent::Bearing],
+    let from_origin = Sensor::Polar {
+        components: vec![PolarComponent::Range, PolarComponent::Bearing],
         position: [0, 2],
-        sensor: [0.0, 0.0],
+        location: [0.0, 0.0],
     };
-    let of_filters = scenario
-        .contestants
-        .iter()
-        .map(|contestant| &contestant.problem.measurement);
+    let of_filters = scenario.contestants.iter().map(|contestant| &contestant.problem.sensor);
     of_filters
-        .chain([&scenario.measurement])
+        .chain([&scenario.sensor])
         .all(|measurement| *measurement == from_origin)
 }
 
@@ -1154,12 +1151,12 @@ fn same_noises(scenario: &Scenario, default: &Scenario, factor: f64) -> bool {
     let pairs = modes(scenario).into_iter().zip(modes(default));
     // One rounding of the variance, and one or two of the entries.
     pairs.into_iter().all(|(mode, default)| {
-        mode.transition == default.transition && (mode.noise - default.noise * factor).amax() < 1e-15 * 10.0
+        mode.motion == default.motion && (mode.noise - default.noise * factor).amax() < 1e-15 * 10.0
     })
 }
 
 fn chain(scenario: &Scenario) -> Vec<Vec<f64>> {
-    scenario.contestants[0].problem.transition.clone()
+    scenario.contestants[0].problem.chain.clone()
 }
 
 /// Each turn with the times of the first and the last state that it reaches.
@@ -1179,12 +1176,13 @@ fn names(scenario: &Scenario) -> Vec<String> {
     scenario.filters().into_iter().map(|filter| filter.name).collect()
 }
 
-fn rule(scenario: &Scenario, contestant: usize) -> Option<immaculate::rule::Rule<f64, 4>> {
-    scenario.contestants[contestant].problem.rule.clone()
+fn rule(scenario: &Scenario, contestant: usize) -> Option<immaculate::rule::Rule<f64, U4>> {
+    let [rule, _] = scenario.contestants[contestant].problem.filters[0].rules();
+    rule.cloned()
 }
 
 /// The unscented rule with α = over/under, β and κ.
-fn unscented(over: i64, under: i64, beta: i64, kappa: i64) -> immaculate::rule::Rule<f64, 4> {
+fn unscented(over: i64, under: i64, beta: i64, kappa: i64) -> immaculate::rule::Rule<f64, U4> {
     let ratio = immaculate::number::Rational::new;
     let parameters = immaculate::rule::unscented::Parameters {
         alpha: ratio(over, under),

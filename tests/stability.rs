@@ -4,16 +4,20 @@
 //! arithmetic and enclosures for what holds at given noises; each certificate is checked, then spoilt and refused. Kind of evidence:
 //! stated with each test.
 
+use immaculate::filter::Filter;
 use immaculate::filter::kalman::{cross_covariance, innovation_covariance, predicted_covariance};
 use immaculate::filter::update::{gain, updated_covariance};
 use immaculate::gaussian::Gaussian;
-use immaculate::imm::{Equations, Imm, Initial, Problem};
+use immaculate::imm::{Imm, Initial, Interaction, Problem};
 use immaculate::matrix::ldl;
 use immaculate::model::acceleration::{
     acceleration_part, acceleration_response, constant_acceleration, embedded_constant_velocity,
     embedded_velocity_response, position_matrix, response_noise,
 };
-use immaculate::model::{Measurement, motion::Mode};
+use immaculate::model::{
+    Sensor,
+    motion::{Mode, Motion},
+};
 use immaculate::number::{Enclosure, Field, Rational, RationalFunction, Real};
 use immaculate::paper::derbez2000::instances;
 use immaculate::paper::monte_carlo::Generator;
@@ -1096,16 +1100,16 @@ fn a_measurement_of_the_whole_state_bounds_the_mixed_covariances() {
         let h = square(&mut within, 1.0) + Matrix2::identity() * 2.0;
         let mode = |j: usize| Mode {
             name: format!("model {j}"),
-            transition: f[j],
+            motion: Motion::Linear(f[j]),
             noise: q[j],
         };
         let problem = Problem {
             modes: vec![mode(0), mode(1)],
-            transition: vec![vec![0.95, 0.05], vec![0.05, 0.95]],
-            measurement: Measurement::Linear(h),
+            chain: vec![vec![0.95, 0.05], vec![0.05, 0.95]],
+            sensor: Sensor::Linear(h),
             measurement_noise: r,
-            rule: None,
-            fixed_gains: None,
+            filters: vec![Filter::kalman()],
+            interaction: Interaction::Imm,
         };
         let estimate = Gaussian {
             mean: Vector2::zeros(),
@@ -1115,7 +1119,7 @@ fn a_measurement_of_the_whole_state_bounds_the_mixed_covariances() {
             modes: vec![estimate; 2],
             mode_probabilities: vec![0.5, 0.5],
         };
-        let mut filter = Imm::new(problem, Equations::kalman(), &initial).unwrap();
+        let mut filter = Imm::new(problem, &initial).unwrap();
         let inverse = |matrix: &Matrix2<f64>| matrix.try_inverse().unwrap();
         let form =
             |matrix: &Matrix2<f64>, vector: &Vector2<f64>| (vector.transpose() * inverse(matrix) * vector)[(0, 0)];

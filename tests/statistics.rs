@@ -8,7 +8,7 @@
 #![allow(clippy::float_cmp)]
 
 use immaculate::gaussian::Gaussian;
-use immaculate::imm::{Failure, Step, cycle::Cause};
+use immaculate::imm::{Failure, Step, failure::Cause};
 use immaculate::paper::Paper;
 use immaculate::paper::comparison::{Comparison, Quantity};
 use immaculate::paper::monte_carlo::{Generator, run};
@@ -23,7 +23,7 @@ use immaculate::statistics::consistency::{bounds, nees, nis};
 use immaculate::statistics::delay::detection_delays;
 use immaculate::statistics::estimate::{figure, mean, paired_difference, root_mean_square};
 use immaculate::statistics::rmse;
-use nalgebra::{Vector4, matrix, vector};
+use nalgebra::{U1, Vector4, matrix, vector};
 use quickcheck::QuickCheck;
 use std::time::Duration;
 
@@ -173,7 +173,7 @@ fn a_failed_run_is_named_and_left_out_of_the_errors() {
     failed.failure = Some(Failure {
         step: 2,
         mode: "left turn".into(),
-        equation: "zhu2016 (1)",
+        value: "measurement",
         cause: Cause::MeasurementNotFinite,
     });
     let runs = [
@@ -195,7 +195,7 @@ fn a_failed_run_is_named_and_left_out_of_the_errors() {
     assert_eq!(reproduction.filters[0].failures[0].run, 2);
     let sentence = &reproduction.filters[0].failures[0].failure;
     assert!(
-        sentence.starts_with("step 2, mode `left turn`, zhu2016 (1):"),
+        sentence.starts_with("step 2, mode `left turn`, measurement:"),
         "{sentence}"
     );
     assert!(reproduction.filters[1].failures.is_empty());
@@ -375,7 +375,11 @@ fn nees_is_the_squared_distance_in_the_metric_of_the_covariance() {
 
 #[test]
 fn nis_is_taken_under_the_mixture_that_predicts_the_measurement() {
-    let mut step = Step::<f64, 1, 1>::zeros(2, 0);
+    let estimate = Gaussian {
+        mean: vector![0.0],
+        covariance: matrix![1.0],
+    };
+    let mut step = Step::<f64, U1, U1>::initial(&[estimate.clone(), estimate], &[0.5, 0.5]);
     assert_eq!(nis(&step), None, "no measurement, no innovation");
     step.measurement = Some(vector![0.0]);
     step.innovations = vec![vector![4.0], vector![0.0]];
@@ -877,7 +881,7 @@ fn a_fit_error_is_of_completed_runs_that_have_one() {
     let failure = Failure {
         step: 4,
         mode: "turn".into(),
-        equation: "liu2017 (1)",
+        value: "measurement",
         cause: Cause::MeasurementNotFinite,
     };
     runs[0][0].failure = Some(failure.clone());

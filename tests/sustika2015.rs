@@ -7,13 +7,14 @@
 // What is exact is compared exactly.
 #![allow(clippy::float_cmp)]
 
+use immaculate::filter::Filter;
 use immaculate::gaussian::Gaussian;
-use immaculate::imm::{Equations, Imm, Initial, Problem};
-use immaculate::model::motion::Mode;
+use immaculate::imm::{Imm, Initial, Interaction, Problem};
+use immaculate::model::motion::{self, Mode};
 use immaculate::model::wiener::{
     constant_acceleration_in_the_plane, constant_velocity_in_the_plane, velocity_noise_in_the_plane,
 };
-use immaculate::model::{Measurement, PolarComponent};
+use immaculate::model::{PolarComponent, Sensor};
 use immaculate::paper::simulation::Simulation;
 use immaculate::paper::specification::{Choices, InvalidChoice};
 use immaculate::paper::sustika2015::contestants::Bearings;
@@ -32,7 +33,7 @@ use immaculate::rule::unscented::unscented_in;
 use immaculate::statistics::Estimate;
 use immaculate::statistics::estimate::mean;
 use immaculate::statistics::fit_error::{FitForm, position_fit_error};
-use nalgebra::{Matrix4, Matrix6, SMatrix, Vector2, Vector4, Vector6};
+use nalgebra::{Matrix4, Matrix6, SMatrix, U2, U4, U6, Vector2, Vector4, Vector6};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -272,15 +273,15 @@ fn the_points_of_kappa_three_minus_n_are_those_of_the_four_states_that_move() {
             let initial = scenario.setup.initial(&draw.measurements[0]);
             let problem = Problem {
                 modes: contestant.problem.modes[..1].to_vec(),
-                transition: vec![vec![1.0]],
-                rule: unscented_in(&1.0, &0.0, &kappas[0]).ok(),
+                chain: vec![vec![1.0]],
+                filters: vec![Filter::points(unscented_in(U6, &1.0, &0.0, &kappas[0]).unwrap())],
                 ..contestant.problem
             };
             let initial = Initial {
                 modes: initial.modes[..1].to_vec(),
                 mode_probabilities: vec![1.0],
             };
-            Imm::new(problem, contestant.equations, &initial).unwrap()
+            Imm::with_equations(problem, contestant.equations, &initial).unwrap()
         };
         let start = &six.current().updated[0].clone();
         let mut four = in_four_states(start, kappas[1]);
@@ -301,23 +302,23 @@ fn the_points_of_kappa_three_minus_n_are_those_of_the_four_states_that_move() {
 
 /// The unscented filter of constant velocity with the state [x, y, ẋ, ẏ], from an embedded estimate. The order matters: another one has
 /// another square root, and so other points.
-fn in_four_states(start: &Gaussian<f64, 6>, kappa: f64) -> Imm<f64, 4, 2> {
+fn in_four_states(start: &Gaussian<f64, U6>, kappa: f64) -> Imm<f64, U4, U2> {
     let first_four = |matrix: Matrix6<f64>| Matrix4::from_fn(|row, column| matrix[(row, column)]);
     let problem = Problem {
         modes: vec![Mode {
             name: "constant velocity".to_owned(),
-            transition: first_four(constant_velocity_in_the_plane(&1.0)),
+            motion: motion::Motion::Linear(first_four(constant_velocity_in_the_plane(&1.0))),
             noise: first_four(velocity_noise_in_the_plane(&NOISE_DENSITY, &1.0)),
         }],
-        transition: vec![vec![1.0]],
-        measurement: Measurement::Polar {
-            components: [PolarComponent::Range, PolarComponent::Bearing],
+        chain: vec![vec![1.0]],
+        sensor: Sensor::Polar {
+            components: vec![PolarComponent::Range, PolarComponent::Bearing],
             position: [0, 1],
-            sensor: [0.0, 0.0],
+            location: [0.0, 0.0],
         },
         measurement_noise: SMatrix::from_diagonal(&Vector2::from(MEASUREMENT_DEVIATIONS.map(|d| d * d))),
-        rule: unscented_in(&1.0, &0.0, &kappa).ok(),
-        fixed_gains: None,
+        filters: vec![Filter::points(unscented_in(U4, &1.0, &0.0, &kappa).unwrap())],
+        interaction: Interaction::Imm,
     };
     let initial = Initial {
         modes: vec![Gaussian {
@@ -326,7 +327,7 @@ fn in_four_states(start: &Gaussian<f64, 6>, kappa: f64) -> Imm<f64, 4, 2> {
         }],
         mode_probabilities: vec![1.0],
     };
-    Imm::new(problem, Equations::cubature(), &initial).unwrap()
+    Imm::new(problem, &initial).unwrap()
 }
 
 #[test]

@@ -28,7 +28,7 @@ use immaculate::rule::sphere::{
 };
 use immaculate::rule::unscented::{self, Parameters};
 use immaculate::rule::{ExactRule, Rule, fifth_degree, printed, third_degree};
-use nalgebra::{Matrix2, Matrix3, Matrix4, Matrix4x2, SMatrix, SVector, Vector2, matrix, vector};
+use nalgebra::{Const, Matrix2, Matrix3, Matrix4, Matrix4x2, SMatrix, SVector, U2, Vector2, matrix, vector};
 use num_traits::{One, Zero};
 
 /// A number with unknowns.
@@ -679,7 +679,7 @@ fn the_raw_form_needs_covariance_weights_that_sum_to_one() {
         let kappa = q(1, 1);
         let parameters = Parameters { alpha, beta, kappa };
         let exact = unscented::unscented(2, &parameters).unwrap();
-        let rule = Rule::<Unknown, 2>::from_exact(&exact).unwrap();
+        let rule = Rule::<Unknown, U2>::from_exact(&exact).unwrap();
         let points = drawn_points(&problem.square_root, &rule.points, &problem.mean);
         let mean = weighted_mean(&rule.weights, &points);
         let weights = &rule.covariance_weights;
@@ -1018,7 +1018,7 @@ fn weights_that_sum_to_one(number: usize) -> Vec<Unknown> {
 }
 
 /// Unknown estimates.
-fn gaussians<const N: usize>(number: usize) -> Vec<Gaussian<Unknown, N>> {
+fn gaussians<const N: usize>(number: usize) -> Vec<Gaussian<Unknown, Const<N>>> {
     (0..number)
         .map(|i| Gaussian {
             mean: unknowns(&format!("m{i}")),
@@ -1238,7 +1238,7 @@ impl<const N: usize, const M: usize> LinearProblem<Surd, N, M> {
 
 impl<T: Roots, const N: usize, const M: usize> LinearProblem<T, N, M> {
     /// Whether a filter with this rule computes what the Kalman filter computes: all six moments.
-    fn is_kalman(&self, rule: &Rule<T, N>) -> bool {
+    fn is_kalman(&self, rule: &Rule<T, Const<N>>) -> bool {
         let (weights, covariance_weights) = (&rule.weights, &rule.covariance_weights);
         // Prediction.
         let drawn = drawn_points(&self.square_root, &rule.points, &self.mean);
@@ -1321,8 +1321,8 @@ fn mixing_of(chain: &[Vec<Unknown>], before: &[Unknown]) -> Vec<Vec<Unknown>> {
 fn mixed_estimates<const N: usize>(
     chain: &[Vec<Unknown>],
     before: &[Unknown],
-    estimates: &[Gaussian<Unknown, N>],
-) -> Vec<Gaussian<Unknown, N>> {
+    estimates: &[Gaussian<Unknown, Const<N>>],
+) -> Vec<Gaussian<Unknown, Const<N>>> {
     let mix = |weights: &Vec<Unknown>| {
         let mean = mixture_mean(weights, estimates);
         let covariance = mixture_covariance(weights, estimates, &mean);

@@ -7,7 +7,7 @@
 use immaculate::book::doc::{Doc, backticked};
 use immaculate::book::reference::{Reference, citations, headings};
 use immaculate::book::source::{Item, items_of, source_files, tests};
-use immaculate::model::Measurement;
+use immaculate::model::Sensor;
 use immaculate::model::motion::acceleration_input;
 use immaculate::paper::scenario::{Motion, Scenario};
 use immaculate::paper::specification::{Choices, Equation, Specification};
@@ -448,7 +448,7 @@ fn the_constants_of_zhu2016_are_the_printed_ones() {
     assert_turn_rate(&mut printed, zhu2016::TURN_RATE);
     let scenario = default_scenario(Paper::Zhu2016);
     let [right, left] = turns(&scenario);
-    let Measurement::Linear(h) = &scenario.measurement else {
+    let Sensor::Linear(h) = &scenario.sensor else {
         panic!("(62) is linear");
     };
     let g = acceleration_input(&scenario.interval);
@@ -493,7 +493,7 @@ fn the_constants_of_liu2017_are_the_printed_ones() {
     assert_turn_rate(&mut printed, liu2017::TURN_RATE);
     let scenario = default_scenario(Paper::Liu2017);
     let [right, left] = turns(&scenario);
-    let Measurement::Polar { sensor, .. } = &scenario.measurement else {
+    let Sensor::Polar { location: sensor, .. } = &scenario.sensor else {
         panic!("(31) is range and bearing");
     };
     let mut code = toml::Table::new();
@@ -561,7 +561,7 @@ fn the_constants_of_derbez2000_are_the_printed_ones() {
     let counts = |counts: [u32; 3]| -> toml::Value { counts.map(i64::from).to_vec().into() };
     put("operations-section-4", counts(derbez2000::OPERATIONS_OF_SECTION_4));
     put("operations-section-4-1", counts(derbez2000::OPERATIONS_OF_SECTION_4_1));
-    put("transition", rows(imm.problems[0].transition.iter().cloned()));
+    put("transition", rows(imm.problems[0].chain.iter().cloned()));
     assert_eq!(code, printed);
 }
 
@@ -607,7 +607,7 @@ fn the_constants_of_sustika2015_are_the_printed_ones() {
     );
     put("filter-noise-density", mismatched.setup.noise_density.into());
     put("filter-range-deviation", mismatched.setup.deviations[0].into());
-    put("transition", rows(imm.problem.transition.iter().cloned()));
+    put("transition", rows(imm.problem.chain.iter().cloned()));
     put(
         "initial-probabilities",
         sustika2015::INITIAL_PROBABILITIES.to_vec().into(),

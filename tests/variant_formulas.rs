@@ -7,23 +7,24 @@
 #![allow(clippy::float_cmp, reason = "ones and zeros are exact")]
 
 use immaculate::filter::fixed_gain::FixedGain;
+use immaculate::filter::{Filter, Update};
 use immaculate::gaussian::Gaussian;
-use immaculate::imm::{Equations, Initial, Problem, Quantity};
-use immaculate::model::motion::Mode;
-use immaculate::model::{Conversion, Measurement, PolarComponent};
+use immaculate::imm::{Equations, Initial, Interaction, Problem, Quantity};
+use immaculate::model::motion::{Mode, Motion};
+use immaculate::model::{Conversion, PolarComponent, Sensor};
 use immaculate::oracle::run::Triangle;
 use immaculate::oracle::setup::Setup;
 use immaculate::oracle::trace::Trace;
 use immaculate::oracle::variant::{Kind, apply, catalogue};
 use immaculate::rule::{Rule, RuleName, unscented::unscented_in};
-use nalgebra::{Matrix2, SMatrix, Vector2, matrix, vector};
+use nalgebra::{DMatrix, DVector, Dyn, Matrix2, SMatrix, Vector2, dmatrix, dvector, matrix, vector};
 use std::f64::consts::PI;
 
 /// What counts as the same number, in parts of the greatest number of its value: some hundred roundings.
 const ROUNDING: f64 = 1e-12;
 
 /// A scene: a problem of two states, two measurements and three modes.
-type Scene = Setup<f64, 2, 2>;
+type Scene = Setup<f64>;
 
 /// A variant, a quantity, and the formula by which the variant computes it in mode j, by rows.
 type Row = (&'static str, Quantity, fn(At, usize) -> Vec<f64>);
@@ -65,8 +66,8 @@ fn a_converted_measurement_is_its_formula() {
 fn the_update_is_its_formula() {
     holds(&kalman(), 2, UPDATE);
     holds(&points("cubature-3"), 2, UPDATE_BY_POINTS);
-    holds(&fixed(&Equations::fixed_gain()), 2, FIXED);
-    holds(&fixed(&Equations::fixed_gain_unmixed()), 2, FIXED_UNMIXED);
+    holds(&fixed(Interaction::Imm), 2, FIXED);
+    holds(&fixed(Interaction::Unmixed), 2, FIXED_UNMIXED);
 }
 
 #[test]
@@ -104,7 +105,7 @@ fn a_convention_is_its_formula() {
     }
     let mut scene = kalman();
     // The third mode lacks the second entry of the state.
-    scene.problem.modes[2].noise = matrix![0.7, 0.0; 0.0, 0.0];
+    scene.problem.modes[2].noise = dmatrix![0.7, 0.0; 0.0, 0.0];
     holds(&scene, 2, UNEQUAL);
 }
 
@@ -134,20 +135,15 @@ fn a_misread_input_is_another_problem() {
 /// Exact: a rule's weights are changed in this rule and in no other.
 #[test]
 fn a_weight_printed_wrongly_is_that_of_the_printed_rule() {
-    let rule = |name: &str| name.parse::<RuleName>().unwrap().rule::<f64, 2>().unwrap();
     for (id, name, printed) in [
         ("cubature-5-weight-13", "cubature-5", "cubature-5-printed"),
         ("simplex-5-weight-11", "simplex-5", "simplex-5-printed-11"),
         ("simplex-5-weight-16", "simplex-5", "simplex-5-printed-16"),
     ] {
-        assert_ne!(rule(name), rule(printed));
+        assert_ne!(points_of(name), points_of(printed));
         for other in ["cubature-3", "cubature-5", "simplex-5", "gauss-hermite-3"] {
-            let expected = rule(if other == name { printed } else { other });
-            assert_eq!(
-                varied(&points(other), id).problem.rule,
-                Some(expected),
-                "{id} in {other}"
-            );
+            let expected = points_of(if other == name { printed } else { other });
+            assert_eq!(rule(&varied(&points(other), id)), expected, "{id} in {other}");
         }
     }
 }
@@ -155,8 +151,8 @@ fn a_weight_printed_wrongly_is_that_of_the_printed_rule() {
 /// Exact: the points and weights that are varied, in numbers.
 #[test]
 fn a_varied_rule_has_these_points_and_weights() {
-    let of = |id, scene: &Scene| varied(scene, id).problem.rule.unwrap();
-    let (scene, plain) = (scaled_points(), scaled_points().problem.rule.unwrap());
+    let of = |id, scene: &Scene| rule(&varied(scene, id));
+    let (scene, plain) = (scaled_points(), rule(&scaled_points()));
     assert_eq!(
         of("covariance-weights-for-means", &scene).weights,
         plain.covariance_weights
@@ -168,7 +164,7 @@ fn a_varied_rule_has_these_points_and_weights() {
     let centre = plain
         .points
         .iter()
-        .position(|point| *point == Vector2::zeros())
+        .position(|point| *point == DVector::zeros(2))
         .unwrap();
     let without = |weights: &[f64]| {
         let mut weights = weights.to_vec();
@@ -188,7 +184,7 @@ fn a_varied_rule_has_these_points_and_weights() {
                 .all(|point| (point.norm() - distance).abs() < ROUNDING),
             "{id}"
         );
-        assert!(of(id, &scene).points.contains(&Vector2::zeros()), "{id}");
+        assert!(of(id, &scene).points.contains(&DVector::zeros(2)), "{id}");
     }
 }
 
@@ -198,8 +194,8 @@ fn raw_moments_are_left_to_rules_whose_weights_sum_to_one() {
     // W = 2 + β − α²
     for (beta, sum) in [(0.0, 1.0), (0.5, 1.5), (-0.5, 0.5)] {
         let mut scene = scaled_points();
-        scene.problem.rule = Some(unscented_in(&1.0, &beta, &0.5).unwrap());
-        let weights = &scene.problem.rule.as_ref().unwrap().covariance_weights;
+        scene.problem.filters = vec![Filter::points(unscented_in(Dyn(2), &1.0, &beta, &0.5).unwrap())];
+        let weights = rule(&scene).covariance_weights;
         assert!((weights.iter().sum::<f64>() - sum).abs() < ROUNDING);
         let shown = moved(&scene);
         let own = scene.run_along(&shown, |value| value, Triangle::Lower).values;
@@ -211,16 +207,17 @@ fn raw_moments_are_left_to_rules_whose_weights_sum_to_one() {
 /// Exact: measurements that are put where there is none.
 #[test]
 fn a_detection_that_is_missing_is_filled_in() {
-    let (first, fourth) = (vector![1.0, 2.0], vector![3.0, 4.0]);
+    let (first, fourth) = (Some(vector![1.0, 2.0]), Some(vector![3.0, 4.0]));
+    let measured = |z: [Option<Vector2<f64>>; 5]| z.map(|z| z.map(|z| DVector::from_column_slice(z.as_slice())));
     let mut scene = kalman();
-    scene.measurements = vec![None, Some(first), None, None, Some(fourth)];
+    scene.measurements = measured([None, first, None, None, fourth]).to_vec();
     let filled = |id| varied(&scene, id).measurements;
     let (zero, nothing) = (Some(Vector2::zeros()), None);
     assert_eq!(
         filled("missed-detection-as-zero"),
-        [zero, Some(first), zero, zero, Some(fourth)]
+        measured([zero, first, zero, zero, fourth])
     );
-    let last = [nothing, Some(first), Some(first), Some(first), Some(fourth)];
+    let last = measured([nothing, first, first, first, fourth]);
     assert_eq!(filled("missed-detection-as-the-last-measurement"), last);
 }
 
@@ -433,7 +430,7 @@ struct At<'a> {
 }
 
 #[rustfmt::skip]
-impl At<'_> {
+impl<'a> At<'a> {
     fn list(self, k: usize, quantity: Q, j: usize) -> Vec<f64> {
         if k == 0 && quantity == Q::ModeProbabilities {
             return self.scene.initial.mode_probabilities.clone();
@@ -445,13 +442,18 @@ impl At<'_> {
     fn before(self) -> Self { Self { k: self.k - 1, ..self } }
 
     // of the problem
-    fn p(self, i: usize, j: usize) -> f64 { self.scene.problem.transition[i][j] }
-    fn f(self, j: usize) -> Matrix2<f64> { self.scene.problem.modes[j % 3].transition }
-    fn q(self, j: usize) -> Matrix2<f64> { self.scene.problem.modes[j % 3].noise }
-    fn h(self) -> Matrix2<f64> { self.scene.problem.measurement.matrix() }
-    fn r(self) -> Matrix2<f64> { self.scene.problem.measurement_noise }
-    fn z(self) -> Vector2<f64> { self.scene.measurements[self.k - 1].unwrap() }
-    fn given(self, j: usize) -> FixedGain<f64, 2, 2> { self.scene.problem.fixed_gains.as_ref().unwrap()[j % 3].clone() }
+    fn p(self, i: usize, j: usize) -> f64 { self.scene.problem.chain[i][j] }
+    fn f(self, j: usize) -> Matrix2<f64> { square_of(&self.scene.problem.modes[j % 3].motion.matrix()) }
+    fn q(self, j: usize) -> Matrix2<f64> { square_of(&self.scene.problem.modes[j % 3].noise) }
+    fn h(self) -> Matrix2<f64> { square_of(&self.scene.problem.h()) }
+    fn r(self) -> Matrix2<f64> { square_of(&self.scene.problem.measurement_noise) }
+    fn z(self) -> Vector2<f64> { Vector2::from_column_slice(self.scene.measurements[self.k - 1].as_ref().unwrap().as_slice()) }
+    fn given(self, j: usize) -> &'a FixedGain<f64, Dyn, Dyn> {
+        match &self.scene.problem.filter(j % 3).update {
+            Update::Given(given) => given,
+            _ => panic!("mode {j} computes its gain"),
+        }
+    }
 
     // of the step before
     fn mu(self, i: usize) -> f64 { self.list(self.k - 1, Q::ModeProbabilities, 0)[i] }
@@ -507,6 +509,11 @@ fn normalised(parts: &[f64]) -> Vec<f64> {
 /// Σᵢ of the three modes.
 fn sum<const R: usize, const C: usize>(term: impl Fn(usize) -> SMatrix<f64, R, C>) -> SMatrix<f64, R, C> {
     term(0) + term(1) + term(2)
+}
+
+/// A matrix of the problem, which has two rows and two columns.
+fn square_of(matrix: &DMatrix<f64>) -> Matrix2<f64> {
+    matrix.fixed_view::<2, 2>(0, 0).into_owned()
 }
 
 /// d dᵀ
@@ -726,8 +733,8 @@ const MEASUREMENT_BY_POINTS: &[Row] = &[
 /// Where the sensor stands, and the coordinates of a state from there: the second entry of the state is x.
 const SENSOR: [f64; 2] = [3.0, -2.0];
 
-fn from(sensor: [f64; 2], state: Vector2<f64>) -> [f64; 2] {
-    [state[1] - sensor[0], state[0] - sensor[1]]
+fn from(location: [f64; 2], state: Vector2<f64>) -> [f64; 2] {
+    [state[1] - location[0], state[0] - location[1]]
 }
 
 /// Range and bearing of the points of the prediction, by another function of the coordinates.
@@ -971,9 +978,9 @@ const UPDATE_BY_POINTS: &[Row] = &[
 
 #[rustfmt::skip]
 const FIXED: &[Row] = &[
-    ("gain-of-the-next-mode", Q::Gain, |a, j| rows(a.given(j + 1).gain)),
-    ("gain-of-the-first-mode", Q::Gain, |a, _| rows(a.given(0).gain)),
-    ("innovation-covariance-of-the-next-mode", Q::InnovationCovariance, |a, j| rows(a.given(j + 1).innovation_covariance)),
+    ("gain-of-the-next-mode", Q::Gain, |a, j| rows(square_of(&a.given(j + 1).gain))),
+    ("gain-of-the-first-mode", Q::Gain, |a, _| rows(square_of(&a.given(0).gain))),
+    ("innovation-covariance-of-the-next-mode", Q::InnovationCovariance, |a, j| rows(square_of(&a.given(j + 1).innovation_covariance))),
     ("unmixed-for-mixed", Q::MixingProbabilities, |_, j| each(|i| if i == j { 1.0 } else { 0.0 })),
 ];
 
@@ -1131,20 +1138,25 @@ type Misread = (&'static str, fn(&mut Scene));
 
 /// The rows of a measurement that are bearings.
 fn bearings(scene: &Scene) -> Vec<usize> {
-    match &scene.problem.measurement {
-        Measurement::Linear(_) => vec![],
-        Measurement::Polar { .. } | Measurement::Converted { .. } => vec![1],
+    match &scene.problem.sensor {
+        Sensor::Linear(_) | Sensor::Function { .. } => vec![],
+        Sensor::Polar { .. } => vec![1],
     }
+}
+
+/// The diagonal of a matrix of the problem, and zeros beside it.
+fn variances(matrix: &DMatrix<f64>) -> DMatrix<f64> {
+    DMatrix::from_diagonal(&matrix.diagonal())
 }
 
 #[rustfmt::skip]
 const INPUTS: &[Misread] = &[
-    ("motion-by-columns", |s| s.problem.modes.iter_mut().for_each(|mode| mode.transition.transpose_mut())),
-    ("measurement-matrix-by-columns", |s| if let Measurement::Linear(h) = &mut s.problem.measurement { h.transpose_mut() }),
-    ("process-noise-of-variances-alone", |s| s.problem.modes.iter_mut().for_each(|mode| mode.noise = diagonal(mode.noise))),
-    ("measurement-noise-of-variances-alone", |s| s.problem.measurement_noise = diagonal(s.problem.measurement_noise)),
-    ("measurement-noise-of-standard-deviations", |s| s.problem.measurement_noise = diagonal(s.problem.measurement_noise).map(f64::sqrt)),
-    ("measurement-noise-squared", |s| s.problem.measurement_noise = diagonal(s.problem.measurement_noise).map(|r| r * r)),
+    ("motion-by-columns", |s| s.problem.modes.iter_mut().for_each(|mode| mode.motion.matrix_mut().unwrap().transpose_mut())),
+    ("measurement-matrix-by-columns", |s| if let Sensor::Linear(h) = &mut s.problem.sensor { h.transpose_mut() }),
+    ("process-noise-of-variances-alone", |s| s.problem.modes.iter_mut().for_each(|mode| mode.noise = variances(&mode.noise))),
+    ("measurement-noise-of-variances-alone", |s| s.problem.measurement_noise = variances(&s.problem.measurement_noise)),
+    ("measurement-noise-of-standard-deviations", |s| s.problem.measurement_noise = variances(&s.problem.measurement_noise).map(f64::sqrt)),
+    ("measurement-noise-squared", |s| s.problem.measurement_noise = variances(&s.problem.measurement_noise).map(|r| r * r)),
     ("bearing-noise-in-degrees", |s| {
         for row in bearings(s) {
             for i in 0..2 {
@@ -1159,15 +1171,15 @@ const INPUTS: &[Misread] = &[
     ("initial-probabilities-reversed", |s| s.initial.mode_probabilities.reverse()),
     ("initial-probabilities-equal", |s| s.initial.mode_probabilities = vec![THIRD; 3]),
     ("initial-estimate-of-the-first-mode", |s| s.initial.modes = vec![s.initial.modes[0].clone(); 3]),
-    ("initial-covariance-of-variances-alone", |s| s.initial.modes.iter_mut().for_each(|e| e.covariance = diagonal(e.covariance))),
+    ("initial-covariance-of-variances-alone", |s| s.initial.modes.iter_mut().for_each(|e| e.covariance = variances(&e.covariance))),
     ("initial-covariance-of-standard-deviations", |s| {
-        s.initial.modes.iter_mut().for_each(|e| e.covariance = diagonal(e.covariance).map(f64::sqrt));
+        s.initial.modes.iter_mut().for_each(|e| e.covariance = variances(&e.covariance).map(f64::sqrt));
     }),
-    ("initial-covariance-ignored", |s| s.initial.modes.iter_mut().for_each(|e| e.covariance = Matrix2::identity())),
-    ("initial-mean-ignored", |s| s.initial.modes.iter_mut().for_each(|e| e.mean = Vector2::zeros())),
-    ("measurement-of-the-next-step", |s| { s.measurements.remove(0); s.measurements.push(*s.measurements.last().unwrap()); }),
-    ("measurement-of-the-step-before", |s| { s.measurements.pop(); s.measurements.insert(0, s.measurements[0]); }),
-    ("measurement-entries-reversed", |s| s.measurements.iter_mut().flatten().for_each(|z| *z = vector![z[1], z[0]])),
+    ("initial-covariance-ignored", |s| s.initial.modes.iter_mut().for_each(|e| e.covariance = DMatrix::identity(2, 2))),
+    ("initial-mean-ignored", |s| s.initial.modes.iter_mut().for_each(|e| e.mean = DVector::zeros(2))),
+    ("measurement-of-the-next-step", |s| { s.measurements.remove(0); s.measurements.push(s.measurements.last().unwrap().clone()); }),
+    ("measurement-of-the-step-before", |s| { s.measurements.pop(); s.measurements.insert(0, s.measurements[0].clone()); }),
+    ("measurement-entries-reversed", |s| s.measurements.iter_mut().flatten().for_each(|z| *z = dvector![z[1], z[0]])),
     ("degrees-for-radians", |s| {
         for row in bearings(s) {
             s.measurements.iter_mut().flatten().for_each(|z| z[row] *= PI / 180.0);
@@ -1186,39 +1198,39 @@ const WEIGHTS: f64 = 2.0 + SCALED[1] - SCALED[0] * SCALED[0];
 /// Kalman filters with full matrices; the third motion sets the second entry of the state to zero.
 fn kalman() -> Scene {
     let modes = [
-        (matrix![1.1, 0.3; -0.2, 0.9], matrix![1.3, 0.4; 0.4, 0.8]),
-        (matrix![0.8, -0.5; 0.4, 1.2], matrix![2.1, -0.3; -0.3, 1.7]),
-        (matrix![0.9, 0.7; 0.0, 0.0], matrix![0.7, 0.1; 0.1, 0.3]),
+        (dmatrix![1.1, 0.3; -0.2, 0.9], dmatrix![1.3, 0.4; 0.4, 0.8]),
+        (dmatrix![0.8, -0.5; 0.4, 1.2], dmatrix![2.1, -0.3; -0.3, 1.7]),
+        (dmatrix![0.9, 0.7; 0.0, 0.0], dmatrix![0.7, 0.1; 0.1, 0.3]),
     ];
     let estimates = [
-        (vector![5.0, -3.0], matrix![4.0, 1.0; 1.0, 3.0]),
-        (vector![7.0, -2.0], matrix![3.0, -0.7; -0.7, 5.0]),
-        (vector![4.0, -5.0], matrix![2.0, 0.4; 0.4, 2.5]),
+        (dvector![5.0, -3.0], dmatrix![4.0, 1.0; 1.0, 3.0]),
+        (dvector![7.0, -2.0], dmatrix![3.0, -0.7; -0.7, 5.0]),
+        (dvector![4.0, -5.0], dmatrix![2.0, 0.4; 0.4, 2.5]),
     ];
     let mode = |(transition, noise)| Mode {
         name: "mode".into(),
-        transition,
+        motion: Motion::Linear(transition),
         noise,
     };
     let estimate = |(mean, covariance)| Gaussian { mean, covariance };
     Setup {
         problem: Problem {
             modes: modes.map(mode).to_vec(),
-            transition: vec![vec![0.7, 0.2, 0.1], vec![0.15, 0.6, 0.25], vec![0.05, 0.4, 0.55]],
-            measurement: Measurement::Linear(matrix![1.2, 0.3; -0.4, 0.9]),
-            measurement_noise: matrix![2.0, 0.5; 0.5, 1.5],
-            rule: None,
-            fixed_gains: None,
+            chain: vec![vec![0.7, 0.2, 0.1], vec![0.15, 0.6, 0.25], vec![0.05, 0.4, 0.55]],
+            sensor: Sensor::Linear(dmatrix![1.2, 0.3; -0.4, 0.9]),
+            measurement_noise: dmatrix![2.0, 0.5; 0.5, 1.5],
+            filters: vec![Filter::kalman()],
+            interaction: Interaction::Imm,
         },
-        equations: Equations::kalman(),
+        equations: Equations::standard(),
         initial: Initial {
             modes: estimates.map(estimate).to_vec(),
             mode_probabilities: vec![0.5, 0.3, 0.2],
         },
         measurements: vec![
-            Some(vector![6.0, -7.0]),
-            Some(vector![5.5, -4.0]),
-            Some(vector![4.0, -6.5]),
+            Some(dvector![6.0, -7.0]),
+            Some(dvector![5.5, -4.0]),
+            Some(dvector![4.0, -6.5]),
         ],
     }
 }
@@ -1226,18 +1238,32 @@ fn kalman() -> Scene {
 /// The same with the points of a rule.
 fn points(rule: &str) -> Scene {
     let mut scene = kalman();
-    scene.problem.rule = Some(rule.parse::<RuleName>().unwrap().rule().unwrap());
-    scene.equations = Equations::cubature();
+    scene.problem.filters = vec![Filter::points(points_of(rule))];
     scene
+}
+
+/// The points and weights of a rule, by its name.
+fn points_of(rule: &str) -> Rule<f64, Dyn> {
+    rule.parse::<RuleName>().unwrap().rule_in(Dyn(2)).unwrap()
+}
+
+/// The rule of a scene's filter, the same for the motion and for the measurement.
+fn rule(scene: &Scene) -> Rule<f64, Dyn> {
+    let [filter] = &scene.problem.filters[..] else {
+        panic!("one filter for all modes");
+    };
+    let [motion, measurement] = filter.rules();
+    assert_eq!(motion, measurement);
+    motion.expect("it draws points").clone()
 }
 
 /// The same with points whose weights for covariances do not sum to one.
 fn scaled_points() -> Scene {
-    let mut scene = points("cubature-3");
+    let mut scene = kalman();
     let [alpha, beta, kappa] = SCALED;
-    let rule: Rule<f64, 2> = unscented_in(&alpha, &beta, &kappa).unwrap();
+    let rule: Rule<f64, Dyn> = unscented_in(Dyn(2), &alpha, &beta, &kappa).unwrap();
     assert!((rule.covariance_weights.iter().sum::<f64>() - WEIGHTS).abs() < ROUNDING);
-    scene.problem.rule = Some(rule);
+    scene.problem.filters = vec![Filter::points(rule)];
     scene
 }
 
@@ -1245,46 +1271,40 @@ fn scaled_points() -> Scene {
 /// state is x.
 fn polar() -> Scene {
     let mut scene = points("cubature-3");
-    scene.problem.measurement = Measurement::Polar {
-        components: [PolarComponent::Range, PolarComponent::Bearing],
+    scene.problem.sensor = Sensor::Polar {
+        components: vec![PolarComponent::Range, PolarComponent::Bearing],
         position: [1, 0],
-        sensor: SENSOR,
+        location: SENSOR,
     };
-    scene.problem.measurement_noise = matrix![0.5, 0.01; 0.01, 0.02];
+    scene.problem.measurement_noise = dmatrix![0.5, 0.01; 0.01, 0.02];
     for (j, estimate) in [0.0, 1.0, 2.0].into_iter().zip(&mut scene.initial.modes) {
-        estimate.mean = vector![-2.0 + 0.3 * j, -40.0 + j];
+        estimate.mean = dvector![-2.0 + 0.3 * j, -40.0 + j];
     }
     for mode in &mut scene.problem.modes {
-        mode.transition = Matrix2::identity() + mode.transition / 100.0;
+        let f = mode.motion.matrix_mut().unwrap();
+        *f = DMatrix::identity(2, 2) + &*f / 100.0;
     }
-    scene.measurements = [3.1, -3.0, 3.05].map(|bearing| Some(vector![42.0, bearing])).to_vec();
+    scene.measurements = [3.1, -3.0, 3.05].map(|bearing| Some(dvector![42.0, bearing])).to_vec();
     scene
 }
 
 /// The same converted to a position.
 fn converted(conversion: Conversion) -> Scene {
     let mut scene = polar();
-    scene.problem.measurement = Measurement::Converted {
-        components: [PolarComponent::Range, PolarComponent::Bearing],
-        position: [1, 0],
-        sensor: SENSOR,
-        conversion,
-    };
-    scene.problem.measurement_noise = matrix![0.5, 0.0; 0.0, 0.02];
-    scene.problem.rule = None;
-    scene.equations = Equations::converted();
+    scene.problem.filters = vec![Filter::converted(conversion)];
+    scene.problem.measurement_noise = dmatrix![0.5, 0.0; 0.0, 0.02];
     scene
 }
 
 /// Filters with fixed gains.
-fn fixed(equations: &Equations<f64, 2, 2>) -> Scene {
+fn fixed(interaction: Interaction) -> Scene {
     let mut scene = kalman();
     let given = |j: f64| FixedGain {
-        gain: matrix![0.5 + 0.1 * j, 0.02; 0.2, 0.3 - 0.05 * j],
-        innovation_covariance: matrix![7.0 + j, 0.6; 0.6, 9.0 - j],
+        gain: dmatrix![0.5 + 0.1 * j, 0.02; 0.2, 0.3 - 0.05 * j],
+        innovation_covariance: dmatrix![7.0 + j, 0.6; 0.6, 9.0 - j],
     };
-    scene.problem.fixed_gains = Some([0.0, 1.0, 2.0].map(given).to_vec());
-    scene.equations = *equations;
+    scene.problem.filters = [0.0, 1.0, 2.0].map(|j| Filter::given(given(j))).to_vec();
+    scene.problem.interaction = interaction;
     for estimate in &mut scene.initial.modes {
         estimate.covariance.fill(0.0);
     }
@@ -1292,29 +1312,29 @@ fn fixed(equations: &Equations<f64, 2, 2>) -> Scene {
 }
 
 /// One state, one measurement, one mode.
-fn scalar() -> Setup<f64, 1, 1> {
+fn scalar() -> Scene {
     Setup {
         problem: Problem {
             modes: vec![Mode {
                 name: "walk".into(),
-                transition: matrix![0.9],
-                noise: matrix![1.5],
+                motion: Motion::Linear(dmatrix![0.9]),
+                noise: dmatrix![1.5],
             }],
-            transition: vec![vec![1.0]],
-            measurement: Measurement::Linear(matrix![0.8]),
-            measurement_noise: matrix![2.0],
-            rule: None,
-            fixed_gains: None,
+            filters: vec![Filter::kalman()],
+            interaction: Interaction::Imm,
+            chain: vec![vec![1.0]],
+            sensor: Sensor::Linear(dmatrix![0.8]),
+            measurement_noise: dmatrix![2.0],
         },
-        equations: Equations::kalman(),
+        equations: Equations::standard(),
         initial: Initial {
             modes: vec![Gaussian {
-                mean: vector![3.0],
-                covariance: matrix![4.0],
+                mean: dvector![3.0],
+                covariance: dmatrix![4.0],
             }],
             mode_probabilities: vec![1.0],
         },
-        measurements: vec![Some(vector![5.0])],
+        measurements: vec![Some(dvector![5.0])],
     }
 }
 

@@ -4,21 +4,22 @@
 //! variant is run in doubles beside the filter itself on small problems with generic numbers, on which no two terms are alike by chance,
 //! and the first value that differs must be of the quantity that its row names. Kind of evidence: oracle.
 
-use immaculate::filter::converted::{converted_covariance, polar_position};
+use immaculate::filter::converted::converted_covariance;
 use immaculate::filter::fixed_gain::FixedGain;
+use immaculate::filter::{Filter, Transform, Update};
 use immaculate::gaussian::{Gaussian, log_density};
-use immaculate::imm::quantity::Input;
-use immaculate::imm::{Equations, Initial, Problem, Quantity, Scope};
+use immaculate::imm::record::Input;
+use immaculate::imm::{Equations, Initial, Interaction, Needs, Problem, Quantity};
 use immaculate::matrix::ldl;
-use immaculate::model::motion::Mode;
-use immaculate::model::{Conversion, Measurement, PolarComponent};
+use immaculate::model::motion::{Mode, Motion};
+use immaculate::model::{Conversion, PolarComponent, Sensor};
 use immaculate::number::Enclosure;
 use immaculate::oracle::run::Triangle;
 use immaculate::oracle::setup::Setup;
 use immaculate::oracle::trace::Trace;
 use immaculate::oracle::variant::{Applies, Kind, Variant, apply, catalogue, find, read};
 use immaculate::rule::{Rule, RuleName, unscented::unscented_in};
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{DMatrix, DVector, Dyn, dmatrix, dvector};
 use std::collections::BTreeSet;
 
 /// What counts as another value, in parts of the quantity's size: far above the rounding of these problems (the greatest is 10⁻¹¹, of a
@@ -66,13 +67,7 @@ fn a_variant_is_made_in_the_equations_that_its_row_names() {
     let both = find("measurement-noise-squared").unwrap();
     let expected = [Quantity::ConvertedMeasurement, Quantity::InnovationCovariance];
     assert_eq!(made_in(both), BTreeSet::from(expected));
-    let quantity_of = |conversions| {
-        both.quantity_in(Scope {
-            covariances: true,
-            conversions,
-        })
-    };
-    assert_eq!([true, false].map(quantity_of), expected);
+    assert_eq!([true, false].map(|converts| both.quantity_in(converts)), expected);
 }
 
 #[test]
@@ -129,21 +124,10 @@ fn a_mistake_or_convention_first_changes_the_quantity_in_whose_equation_it_is_ma
         for scene in scenes() {
             let (expected, found) = (scene.run(&[]), scene.run(&[&variant.id]));
             let first = first_change(&expected, &found, ROUNDING);
-            let quantity = variant.quantity_in(scene.scope());
+            let quantity = variant.quantity_in(scene.converts());
             is_seen |= first == first_change(&expected, &found, CHANGE) && first == Some(quantity);
             let is_earlier = first.is_some_and(|first| first < quantity);
-            if is_earlier {
-                println!("EARLIER {} {first:?} {}", variant.id, scene.name());
-            }
-            assert!(
-                !is_earlier,
-                "{} changes {first:?} first on {}",
-                variant.id,
-                scene.name()
-            );
-        }
-        if !is_seen {
-            println!("UNSEEN {}", variant.id);
+            assert!(!is_earlier, "{} changes {first:?} first on {}", variant.id, scene.name);
         }
         assert!(is_seen, "{} first changes {:?} nowhere", variant.id, variant.quantity);
     }
@@ -163,12 +147,12 @@ fn along_its_own_values_a_variant_is_seen_where_it_is_made() {
         for scene in scenes() {
             let shown = scene.run(&[&variant.id]);
             let unexplained = changes(&shown, &scene.along(&[], &shown));
-            let made_in = variant.quantity_in(scene.scope());
+            let made_in = variant.quantity_in(scene.converts());
             is_seen |= unexplained.contains(&made_in);
             let is_first = unexplained.iter().all(|&quantity| quantity >= made_in);
-            assert!(is_first, "{} on {}: {unexplained:?}", variant.id, scene.name());
+            assert!(is_first, "{} on {}: {unexplained:?}", variant.id, scene.name);
             let rest = changes(&shown, &scene.along(&[&variant.id], &shown));
-            assert!(rest.is_empty(), "{} on {}: {rest:?}", variant.id, scene.name());
+            assert!(rest.is_empty(), "{} on {}: {rest:?}", variant.id, scene.name);
         }
         assert!(is_seen, "{} leaves {:?} explained", variant.id, variant.quantity);
     }
@@ -180,9 +164,9 @@ fn a_form_changes_nothing_but_rounding() {
         let mut is_another = false;
         for scene in scenes() {
             let (expected, found) = (scene.run(&[]), scene.run(&[&variant.id]));
-            assert_eq!(expected.count(), found.count(), "{} on {}", variant.id, scene.name());
+            assert_eq!(expected.count(), found.count(), "{} on {}", variant.id, scene.name);
             let first = first_change(&expected, &found, ROUNDING);
-            assert_eq!(first, None, "{} on {}", variant.id, scene.name());
+            assert_eq!(first, None, "{} on {}", variant.id, scene.name);
             is_another |= expected != found;
         }
         assert!(is_another, "{} is the same arithmetic", variant.id);
@@ -193,10 +177,10 @@ fn a_form_changes_nothing_but_rounding() {
 fn a_variant_changes_nothing_where_it_does_not_apply() {
     let mut left_alone = BTreeSet::new();
     for variant in catalogue() {
-        for scene in scenes().iter().filter(|scene| !scene.applies(variant)) {
+        for scene in scenes().iter().filter(|scene| !variant.applies_to(&scene.setup)) {
             let (expected, found) = (scene.run(&[]), scene.run(&[&variant.id]));
             let first = first_change(&expected, &found, ROUNDING);
-            assert_eq!(first, None, "{} on {}", variant.id, scene.name());
+            assert_eq!(first, None, "{} on {}", variant.id, scene.name);
             left_alone.insert(format!("{:?}", variant.applies));
         }
     }
@@ -213,7 +197,7 @@ fn where_a_variant_applies_is_what_its_word_says() {
     let everywhere = ["all", "missed", "several modes"];
     let kalman = ["kalman", "covariances"];
     let dimensions = ["embedded motion", "unequal dimensions"];
-    let of = |setup: &Setup<f64, 4, 2>| words(&|applies| applies.to(setup));
+    let of = |setup: &Setup<f64>| words(&|applies| applies.to(setup));
     let expected = |more: &[&[&'static str]]| everywhere.into_iter().chain(more.concat()).collect::<BTreeSet<_>>();
     assert_eq!(of(&linear(3)), expected(&[&kalman]));
     assert_eq!(of(&embedded()), expected(&[&kalman, &dimensions[..1]]));
@@ -222,11 +206,11 @@ fn where_a_variant_applies_is_what_its_word_says() {
         of(&polar(RULE)),
         expected(&[&["points", "covariances", "angles", "bearings"]])
     );
-    assert_eq!(of(&fixed(&Equations::fixed_gain())), expected(&[&["fixed gains"]]));
+    assert_eq!(of(&fixed(Interaction::Imm)), expected(&[&["fixed gains"]]));
     let of_converted = expected(&[&kalman, &dimensions, &["conversions", "bearings"]]);
     assert_eq!(of(&converted(Conversion::Standard)), of_converted);
     let mut one = linear(1);
-    one.measurements[2] = one.measurements[1];
+    one.measurements[2] = one.measurements[1].clone();
     assert_eq!(of(&one), BTreeSet::from(["all", "kalman", "covariances"]));
 }
 
@@ -303,7 +287,7 @@ fn two_wrongs_can_make_a_right() {
 #[test]
 fn every_variant_can_be_evaluated_on_enclosures() {
     for variant in catalogue() {
-        for mut setup in [linear(3), polar("cubature-3"), fixed(&Equations::fixed_gain())] {
+        for mut setup in [linear(3), polar("cubature-3"), fixed(Interaction::Imm)] {
             // Two steps, and a detection in the first only: along the way doubles lose the digits of filters that are very wrong.
             setup.measurements.truncate(2);
             setup.measurements[1] = None;
@@ -327,10 +311,8 @@ fn every_variant_can_be_evaluated_on_enclosures() {
 /// measurement of the points has the right covariances.
 #[test]
 fn every_square_root_gives_the_same_filter_on_a_linear_problem() {
-    let rule: Rule<f64, 4> = RULE.parse::<RuleName>().unwrap().rule().unwrap();
     let mut setup = linear(3);
-    setup.problem.rule = Some(rule);
-    setup.equations = Equations::cubature();
+    setup.problem.filters = vec![points(RULE)];
     let expected = setup.run().values;
     for id in ["square-root-upper", "square-root-symmetric"] {
         let found = varied(setup.clone(), &[id]).run().values;
@@ -349,34 +331,26 @@ fn a_covariance_updated_without_a_detection_uses_the_converted_noise_at_the_pred
     );
     let step = 1 + setup.measurements.iter().position(Option::is_none).unwrap();
     let run = setup.run().values;
-    let Problem {
-        measurement,
-        measurement_noise,
-        ..
-    } = &setup.problem;
+    let (sensor, measurement_noise) = (&setup.problem.sensor, &setup.problem.measurement_noise);
     let prediction = run.get(step, Quantity::CombinedPredictionMean, 0).unwrap();
-    let at = polar_position(measurement, &SVector::from_column_slice(prediction));
-    let (h, noise) = (
-        measurement.matrix(),
-        converted_covariance(measurement, &at, measurement_noise),
-    );
+    let at = sensor.of(&DVector::from_column_slice(prediction));
+    let noise = converted_covariance(Conversion::Standard, sensor, &at, measurement_noise).unwrap();
+    let h = &*setup.problem.h();
     for j in 0..setup.problem.modes.len() {
-        let of_mode = |quantity| SMatrix::<f64, 4, 4>::from_row_slice(run.get(step, quantity, j).unwrap());
+        let of_mode = |quantity| DMatrix::from_row_slice(4, 4, run.get(step, quantity, j).unwrap());
         let predicted = of_mode(Quantity::PredictedCovariance);
-        let gain = predicted * h.transpose() * (h * predicted * h.transpose() + noise).try_inverse().unwrap();
-        let expected = predicted - gain * h * predicted;
-        let found = of_mode(Quantity::UpdatedCovariance);
+        let updated = |noise: &DMatrix<f64>| {
+            let innovation_covariance = h * &predicted * h.transpose() + noise;
+            let gain = &predicted * h.transpose() * innovation_covariance.try_inverse().unwrap();
+            &predicted - gain * h * &predicted
+        };
+        let (found, expected) = (of_mode(Quantity::UpdatedCovariance), updated(&noise));
         assert!(
-            (found - expected).amax() < ROUNDING * predicted.amax(),
+            (&found - &expected).amax() < ROUNDING * predicted.amax(),
             "mode {j}: {found} {expected}"
         );
         // R itself, in metres and radians, is another noise.
-        let gain = predicted
-            * h.transpose()
-            * (h * predicted * h.transpose() + measurement_noise)
-                .try_inverse()
-                .unwrap();
-        assert!((found - (predicted - gain * h * predicted)).amax() > CHANGE * predicted.amax());
+        assert!((found - updated(measurement_noise)).amax() > CHANGE * predicted.amax());
     }
 }
 
@@ -389,19 +363,16 @@ fn a_value_is_computed_from_its_inputs_and_from_nothing_else() {
         linear(3),
         polar("cubature-3"),
         converted(Conversion::Standard),
-        fixed(&Equations::fixed_gain()),
+        fixed(Interaction::Imm),
     ] {
-        let scope = Scope {
-            covariances: setup.equations.keeps_covariances,
-            conversions: setup.equations.converts,
-        };
         let shown = setup.run().values;
         let before = setup.run_along(&shown, |value| value, Triangle::Lower).values;
         let is_detected = |step: usize| setup.measurements[step - 1].is_some();
-        let exists =
-            |step, quantity: Quantity| scope.has(quantity) && (is_detected(step) || !quantity.needs_detection());
+        let has = |step, needed| setup.problem.has(needed) && (is_detected(step) || needed != Needs::Detection);
+        let exists = |step, quantity: Quantity| quantity.exists(|needed| has(step, needed));
         let pair = |step, quantity: Quantity, input: Input| {
-            (quantity, format!("{input:?}"), is_detected(step), scope.covariances)
+            let has_covariances = setup.problem.has_covariances();
+            (quantity, format!("{input:?}"), is_detected(step), has_covariances)
         };
         for (step, moved, mode) in shown.all_places() {
             assert_eq!(shown.get(step, moved, mode).is_some(), exists(step, moved), "{moved:?}");
@@ -426,7 +397,7 @@ fn a_value_is_computed_from_its_inputs_and_from_nothing_else() {
                 let is_next = of_step == step || of_step == step + 1;
                 let is_declared = is_next
                     && quantity
-                        .inputs(is_detected(of_step), scope)
+                        .inputs(|needed| has(of_step, needed))
                         .any(|declared| declared == input);
                 if is_declared && exists(of_step, quantity) {
                     declared.insert(pair(of_step, quantity, input));
@@ -469,18 +440,15 @@ fn a_value_is_computed_from_its_inputs_and_from_nothing_else() {
 /// What is computed without a detection is computed from what is there without one.
 #[test]
 fn without_a_detection_nothing_is_computed_from_one() {
-    let exists = |quantity: &Quantity| !quantity.needs_detection();
     for (covariances, conversions) in [(true, true), (true, false), (false, false)] {
-        let scope = Scope {
-            covariances,
-            conversions,
+        let has = |needed| match needed {
+            Needs::Covariances => covariances,
+            Needs::Conversion => conversions,
+            Needs::Detection => false,
         };
-        for quantity in Quantity::ALL
-            .into_iter()
-            .filter(|quantity| scope.has(*quantity) && exists(quantity))
-        {
-            for Input::Now(input) | Input::Before(input) in quantity.inputs(false, scope) {
-                assert!(exists(&input) && scope.has(input), "{quantity:?} from {input:?}");
+        for quantity in Quantity::ALL.into_iter().filter(|quantity| quantity.exists(has)) {
+            for Input::Now(input) | Input::Before(input) in quantity.inputs(has) {
+                assert!(input.exists(has), "{quantity:?} from {input:?}");
             }
         }
     }
@@ -489,8 +457,7 @@ fn without_a_detection_nothing_is_computed_from_one() {
 /// Of the quantities of two rows and two columns exactly the covariances are symmetric, where a problem's numbers are generic.
 #[test]
 fn the_covariances_are_the_symmetric_matrices() {
-    let measurement = Measurement::Linear(matrix(70, 0.3) + SMatrix::identity());
-    let run = generic::<2, 2>(3, measurement).run().values;
+    let run = square(3).run().values;
     let mut symmetric = BTreeSet::new();
     for (step, quantity, mode) in run.all_places() {
         if let (2, Some(values)) = (quantity.rank(), run.get(step, quantity, mode)) {
@@ -518,11 +485,10 @@ fn the_residuals_of_variants_are_of_what_the_filter_uses() {
             let values = |quantity| shown.get(step, quantity, j).unwrap();
             let negative: Vec<f64> = values(quantity).iter().map(|value| -value).collect();
             assert_eq!(reversed.get(step, quantity, j), Some(&negative));
-            let vector = |quantity| SVector::<f64, 2>::from_column_slice(values(quantity));
-            let mean = SVector::<f64, 4>::from_column_slice(values(Quantity::UpdatedMean));
-            let predicted = vector(Quantity::PredictedMeasurement);
-            let residual = vector(quantity) + predicted - setup.problem.measurement.matrix() * mean;
-            let covariance = SMatrix::<f64, 2, 2>::from_row_slice(values(Quantity::InnovationCovariance));
+            let vector = |quantity| DVector::from_column_slice(values(quantity));
+            let (mean, predicted) = (vector(Quantity::UpdatedMean), vector(Quantity::PredictedMeasurement));
+            let residual = vector(quantity) + predicted - &*setup.problem.h() * mean;
+            let covariance = DMatrix::from_row_slice(2, 2, values(Quantity::InnovationCovariance));
             let expected = log_density(&residual, &ldl(&covariance));
             let found = updated.get(step, Quantity::LogLikelihood, j).unwrap()[0];
             assert!(
@@ -540,70 +506,28 @@ const RULE: &str = "cubature-5";
 /// The scenes whose likelihoods are beyond doubles.
 const OUTLIERS: [&str; 2] = ["outlier", "faint"];
 
-/// A problem of one of the shapes that are needed.
-enum Scene {
-    Large(&'static str, Setup<f64, 4, 2>),
-    Square(&'static str, Setup<f64, 2, 2>),
-    Small(&'static str, Setup<f64, 1, 1>),
+/// A problem and its name.
+struct Scene {
+    name: &'static str,
+    setup: Setup<f64>,
 }
 
 impl Scene {
-    fn name(&self) -> &'static str {
-        match self {
-            Self::Large(name, _) | Self::Square(name, _) | Self::Small(name, _) => name,
-        }
-    }
-
     fn run(&self, ids: &[&str]) -> Trace {
-        match self {
-            Self::Large(_, setup) => varied(setup.clone(), ids).run().values,
-            Self::Square(_, setup) => varied(setup.clone(), ids).run().values,
-            Self::Small(_, setup) => varied(setup.clone(), ids).run().values,
-        }
+        varied(self.setup.clone(), ids).run().values
     }
 
     fn along(&self, ids: &[&str], shown: &Trace) -> Trace {
-        match self {
-            Self::Large(_, setup) => {
-                varied(setup.clone(), ids)
-                    .run_along(shown, |value| value, Triangle::Lower)
-                    .values
-            }
-            Self::Square(_, setup) => {
-                varied(setup.clone(), ids)
-                    .run_along(shown, |value| value, Triangle::Lower)
-                    .values
-            }
-            Self::Small(_, setup) => {
-                varied(setup.clone(), ids)
-                    .run_along(shown, |value| value, Triangle::Lower)
-                    .values
-            }
-        }
+        let varied = varied(self.setup.clone(), ids);
+        varied.run_along(shown, |value| value, Triangle::Lower).values
     }
 
-    fn scope(&self) -> Scope {
-        let of = |covariances, conversions| Scope {
-            covariances,
-            conversions,
-        };
-        match self {
-            Self::Large(_, setup) => of(setup.equations.keeps_covariances, setup.equations.converts),
-            Self::Square(_, setup) => of(setup.equations.keeps_covariances, setup.equations.converts),
-            Self::Small(_, setup) => of(setup.equations.keeps_covariances, setup.equations.converts),
-        }
-    }
-
-    fn applies(&self, variant: &Variant) -> bool {
-        match self {
-            Self::Large(_, setup) => variant.applies_to(setup),
-            Self::Square(_, setup) => variant.applies_to(setup),
-            Self::Small(_, setup) => variant.applies_to(setup),
-        }
+    fn converts(&self) -> bool {
+        self.setup.problem.conversion().is_some()
     }
 }
 
-fn varied<const N: usize, const M: usize>(mut setup: Setup<f64, N, M>, ids: &[&str]) -> Setup<f64, N, M> {
+fn varied(mut setup: Setup<f64>, ids: &[&str]) -> Setup<f64> {
     for id in ids {
         assert!(apply(id, &mut setup), "{id}");
     }
@@ -612,72 +536,80 @@ fn varied<const N: usize, const M: usize>(mut setup: Setup<f64, N, M>, ids: &[&s
 
 fn scenes() -> Vec<Scene> {
     let mut other_order = polar("cubature-3");
-    let scaled = unscented_in(&0.5, &2.0, &0.0).unwrap();
-    if let Measurement::Polar { components, .. } = &mut other_order.problem.measurement {
+    let scaled = unscented_in(Dyn(4), &0.5, &2.0, &0.0).unwrap();
+    if let Sensor::Polar { components, .. } = &mut other_order.problem.sensor {
         components.reverse();
     }
-    other_order.problem.rule = Some(scaled);
+    other_order.problem.filters = vec![Filter::points(scaled)];
     for z in other_order.measurements.iter_mut().flatten() {
-        *z = SVector::from([z[1], z[0]]);
+        *z = dvector![z[1], z[0]];
     }
     let noise = &mut other_order.problem.measurement_noise;
-    *noise = SMatrix::from([[noise[(1, 1)], noise[(0, 1)]], [noise[(0, 1)], noise[(0, 0)]]]);
+    *noise = dmatrix![noise[(1, 1)], noise[(0, 1)]; noise[(0, 1)], noise[(0, 0)]];
 
     let mut outlier = linear(2);
-    outlier.measurements[1] = Some(SVector::from([900.0, -700.0]));
+    outlier.measurements[1] = Some(dvector![900.0, -700.0]);
     // Log-likelihoods of about −1022 and −699: below and above the logarithm of the smallest normal double, −708.
     let mut faint = linear(2);
-    faint.measurements[0] = Some(SVector::from([132.0, -91.2]));
-    let mut points = linear(2);
-    points.problem.rule = Some("simplex-5".parse::<RuleName>().unwrap().rule().unwrap());
-    points.equations = Equations::cubature();
-    vec![
-        Scene::Large("linear", linear(3)),
-        Scene::Large("one mode", linear(1)),
-        Scene::Large(OUTLIERS[0], outlier),
-        Scene::Large(OUTLIERS[1], faint),
-        Scene::Large("linear with points", points),
-        Scene::Large("fixed gains", fixed(&Equations::fixed_gain())),
-        Scene::Large("fixed gains, unmixed", fixed(&Equations::fixed_gain_unmixed())),
-        Scene::Large("embedded", embedded()),
-        Scene::Large("unequal dimensions", unequal(embedded())),
-        Scene::Large("converted", converted(Conversion::Standard)),
-        Scene::Large("converted and debiased", converted(Conversion::Additive)),
-        Scene::Large("fifth degree", polar(RULE)),
-        Scene::Large("simplex", polar("simplex-5")),
-        Scene::Large("scaled unscented", other_order),
-        Scene::Square(
-            "square",
-            generic(2, Measurement::Linear(matrix(70, 0.3) + SMatrix::identity())),
-        ),
-        Scene::Small("scalar", generic(2, Measurement::Linear(SMatrix::from([[0.8]])))),
-    ]
+    faint.measurements[0] = Some(dvector![132.0, -91.2]);
+    let mut drawing = linear(2);
+    drawing.problem.filters = vec![points("simplex-5")];
+    let scenes = [
+        ("linear", linear(3)),
+        ("one mode", linear(1)),
+        (OUTLIERS[0], outlier),
+        (OUTLIERS[1], faint),
+        ("linear with points", drawing),
+        ("fixed gains", fixed(Interaction::Imm)),
+        ("fixed gains, unmixed", fixed(Interaction::Unmixed)),
+        ("embedded", embedded()),
+        ("unequal dimensions", unequal(embedded())),
+        ("converted", converted(Conversion::Standard)),
+        ("converted and debiased", converted(Conversion::Additive)),
+        ("fifth degree", polar(RULE)),
+        ("simplex", polar("simplex-5")),
+        ("scaled unscented", other_order),
+        ("square", square(2)),
+        ("scalar", generic(1, 2, Sensor::Linear(dmatrix![0.8]), Filter::kalman())),
+    ];
+    scenes.map(|(name, setup)| Scene { name, setup }).into()
+}
+
+/// A filter with the points of a rule, for four entries of the state.
+fn points(rule: &str) -> Filter<f64, Dyn, Dyn> {
+    Filter::points(rule.parse::<RuleName>().unwrap().rule_in(Dyn(4)).unwrap())
 }
 
 /// Kalman filters.
-fn linear(modes: usize) -> Setup<f64, 4, 2> {
-    let mut h: SMatrix<f64, 2, 4> = matrix(80, 0.2);
+fn linear(modes: usize) -> Setup<f64> {
+    let mut h = matrix(2, 4, 80, 0.2);
     h[(0, 0)] += 1.0;
     h[(1, 2)] += 1.0;
-    let mut setup = generic(modes, Measurement::Linear(h));
+    let mut setup = generic(4, modes, Sensor::Linear(h), Filter::kalman());
     setup.measurements[2] = None;
     setup
 }
 
+/// Kalman filters of as many measurements as entries of the state.
+fn square(modes: usize) -> Setup<f64> {
+    let h = matrix(2, 2, 70, 0.3) + DMatrix::identity(2, 2);
+    generic(2, modes, Sensor::Linear(h), Filter::kalman())
+}
+
 /// Filters with fixed gains: those of the initial covariances, so that the filter follows what it measures.
-fn fixed(equations: &Equations<f64, 4, 2>) -> Setup<f64, 4, 2> {
+fn fixed(interaction: Interaction) -> Setup<f64> {
     let mut setup = linear(3);
-    let h = setup.problem.measurement.matrix();
-    let of_mode = |estimate: &Gaussian<f64, 4>| {
-        let innovation_covariance = h * estimate.covariance * h.transpose() + setup.problem.measurement_noise;
-        let inverse = innovation_covariance.try_inverse().unwrap();
-        FixedGain {
-            gain: estimate.covariance * h.transpose() * inverse,
-            innovation_covariance: (innovation_covariance + innovation_covariance.transpose()) / 2.0,
-        }
+    let h = setup.problem.h().into_owned();
+    let of_mode = |estimate: &Gaussian<f64, Dyn>| {
+        let innovation_covariance = &h * &estimate.covariance * h.transpose() + &setup.problem.measurement_noise;
+        let inverse = innovation_covariance.clone().try_inverse().unwrap();
+        Filter::given(FixedGain {
+            gain: &estimate.covariance * h.transpose() * inverse,
+            innovation_covariance: (&innovation_covariance + innovation_covariance.transpose()) / 2.0,
+        })
     };
-    setup.problem.fixed_gains = Some(setup.initial.modes.iter().map(of_mode).collect());
-    setup.equations = *equations;
+    setup.problem.filters = setup.initial.modes.iter().map(of_mode).collect();
+    setup.problem.interaction = interaction;
     for estimate in &mut setup.initial.modes {
         estimate.covariance.fill(0.0);
     }
@@ -686,83 +618,68 @@ fn fixed(equations: &Equations<f64, 4, 2>) -> Setup<f64, 4, 2> {
 }
 
 /// Kalman filters of which one sets an entry of the state to zero.
-fn embedded() -> Setup<f64, 4, 2> {
+fn embedded() -> Setup<f64> {
     let mut setup = linear(3);
-    setup.problem.modes[1].transition.row_mut(3).fill(0.0);
+    setup.problem.modes[1].motion.matrix_mut().unwrap().row_mut(3).fill(0.0);
     setup
 }
 
 /// Converted measurements, of modes of unequal dimensions.
-fn converted(conversion: Conversion) -> Setup<f64, 4, 2> {
+fn converted(conversion: Conversion) -> Setup<f64> {
     let mut setup = unequal(polar(RULE));
-    if let Measurement::Polar {
-        components,
-        position,
-        sensor,
-    } = setup.problem.measurement
-    {
-        setup.problem.measurement = Measurement::Converted {
-            components,
-            position,
-            sensor,
-            conversion,
-        };
-    }
-    setup.problem.measurement_noise = SMatrix::from([[4.0, 0.0], [0.0, 0.01]]);
-    setup.problem.rule = None;
-    setup.equations = Equations::converted();
+    setup.problem.filters = vec![Filter::converted(conversion)];
+    setup.problem.measurement_noise = dmatrix![4.0, 0.0; 0.0, 0.01];
     setup
 }
 
 /// The second mode lacks the last entry of the state.
-fn unequal(mut setup: Setup<f64, 4, 2>) -> Setup<f64, 4, 2> {
+fn unequal(mut setup: Setup<f64>) -> Setup<f64> {
     let mode = &mut setup.problem.modes[1];
-    mode.transition.row_mut(3).fill(0.0);
+    mode.motion.matrix_mut().unwrap().row_mut(3).fill(0.0);
     mode.noise.row_mut(3).fill(0.0);
     mode.noise.column_mut(3).fill(0.0);
     setup
 }
 
 /// Range and bearing from a sensor to the east of the target, so that the bearing is cut where the target is.
-fn polar(rule: &str) -> Setup<f64, 4, 2> {
-    let measurement = Measurement::Polar {
-        components: [PolarComponent::Range, PolarComponent::Bearing],
+fn polar(rule: &str) -> Setup<f64> {
+    let sensor = Sensor::Polar {
+        components: vec![PolarComponent::Range, PolarComponent::Bearing],
         position: [0, 2],
-        sensor: [3.0, -2.0],
+        location: [3.0, -2.0],
     };
-    let mut setup = generic(3, measurement);
-    setup.problem.rule = Some(rule.parse::<RuleName>().unwrap().rule().unwrap());
-    setup.equations = Equations::cubature();
-    setup.problem.measurement_noise = SMatrix::from([[4.0, 0.02], [0.02, 0.01]]);
+    let mut setup = generic(4, 3, sensor, points(rule));
+    setup.problem.measurement_noise = dmatrix![4.0, 0.02; 0.02, 0.01];
     for (j, estimate) in setup.initial.modes.iter_mut().enumerate() {
-        estimate.mean = SVector::from([-50.0 + index(j), 0.7, -1.5 - 0.3 * index(j), 0.4]);
+        estimate.mean = dvector![-50.0 + index(j), 0.7, -1.5 - 0.3 * index(j), 0.4];
         estimate.covariance *= 4.0;
     }
     let bearings = [3.1, -3.12, 3.05, -3.0, 3.13];
     for (k, z) in setup.measurements.iter_mut().enumerate() {
-        *z = Some(SVector::from([52.0 + 1.3 * value(200 + k), bearings[k]]));
+        *z = Some(dvector![52.0 + 1.3 * value(200 + k), bearings[k]]);
     }
     setup.measurements[3] = None;
     setup
 }
 
-/// Modes, noises, estimates and measurements with full matrices.
-fn generic<const N: usize, const M: usize>(modes: usize, measurement: Measurement<f64, N, M>) -> Setup<f64, N, M> {
+/// Modes, noises, estimates and measurements with full matrices, for n entries of the state, and the same filter in all modes.
+fn generic(n: usize, modes: usize, sensor: Sensor<f64, Dyn, Dyn>, filter: Filter<f64, Dyn, Dyn>) -> Setup<f64> {
+    let m = sensor.dimension().0;
     let mode = |j: usize| Mode {
         name: format!("mode {j}"),
-        transition: SMatrix::identity() + matrix::<N, N>(100 * j, 0.2),
-        noise: covariance(100 * j + 20, 1.0 + 2.0 * index(j)),
+        motion: Motion::Linear(DMatrix::identity(n, n) + matrix(n, n, 100 * j, 0.2)),
+        noise: covariance(n, 100 * j + 20, 1.0 + 2.0 * index(j)),
     };
     let estimate = |j: usize| Gaussian {
-        mean: SVector::from_fn(|row, _| 8.0 + 3.0 * value(100 * j + 40 + row)),
-        covariance: covariance(100 * j + 60, 6.0),
+        mean: DVector::from_fn(n, |row, _| 8.0 + 3.0 * value(100 * j + 40 + row)),
+        covariance: covariance(n, 100 * j + 60, 6.0),
     };
     let shares = |seed: usize| {
         let weights: Vec<f64> = (0..modes).map(|j| 1.2 + value(seed + j)).collect();
         let sum: f64 = weights.iter().sum();
         weights.iter().map(|weight| weight / sum).collect::<Vec<_>>()
     };
-    let transition = (0..modes).map(|i| {
+    let chain = (0..modes).map(|i| {
         let stay = |j: usize| if i == j { 0.6 + 0.1 * index(i) } else { 0.0 };
         let leave = 0.4 - 0.1 * index(i);
         let row = shares(300 + 10 * i);
@@ -773,21 +690,21 @@ fn generic<const N: usize, const M: usize>(modes: usize, measurement: Measuremen
     });
     let problem = Problem {
         modes: (0..modes).map(mode).collect(),
-        transition: transition.collect(),
-        measurement,
-        measurement_noise: covariance(500, 3.0),
-        rule: None,
-        fixed_gains: None,
+        filters: vec![filter],
+        interaction: Interaction::Imm,
+        chain: chain.collect(),
+        sensor,
+        measurement_noise: covariance(m, 500, 3.0),
     };
     let initial = Initial {
         modes: (0..modes).map(estimate).collect(),
         mode_probabilities: shares(400),
     };
     assert_eq!(problem.check(&initial).err(), None);
-    let measured = |k: usize| Some(SVector::from_fn(|row, _| 8.0 + 5.0 * value(600 + 10 * k + row)));
+    let measured = |k: usize| Some(DVector::from_fn(m, |row, _| 8.0 + 5.0 * value(600 + 10 * k + row)));
     Setup {
         problem,
-        equations: Equations::kalman(),
+        equations: Equations::standard(),
         initial,
         measurements: (0..5).map(measured).collect(),
     }
@@ -802,74 +719,50 @@ fn index(j: usize) -> f64 {
     f64::from(u32::try_from(j).unwrap())
 }
 
-fn matrix<const R: usize, const C: usize>(seed: usize, size: f64) -> SMatrix<f64, R, C> {
-    SMatrix::from_fn(|row, column| size * value(seed + 4 * row + column))
+fn matrix(rows: usize, columns: usize, seed: usize, size: f64) -> DMatrix<f64> {
+    DMatrix::from_fn(rows, columns, |row, column| size * value(seed + 4 * row + column))
 }
 
-fn covariance<const D: usize>(seed: usize, size: f64) -> SMatrix<f64, D, D> {
-    let root = SMatrix::<f64, D, D>::identity() + matrix::<D, D>(seed, 0.5);
-    root * root.transpose() * size
+fn covariance(n: usize, seed: usize, size: f64) -> DMatrix<f64> {
+    let root = DMatrix::identity(n, n) + matrix(n, n, seed, 0.5);
+    &root * root.transpose() * size
 }
 
 /// The same problem, its numbers as exact enclosures.
-fn on_enclosures<const N: usize, const M: usize>(setup: &Setup<f64, N, M>) -> Setup<Enclosure, N, M> {
+fn on_enclosures(setup: &Setup<f64>) -> Setup<Enclosure> {
     let problem = &setup.problem;
-    let list = |values: &[f64]| values.iter().copied().map(Enclosure::exact).collect::<Vec<_>>();
     let modes = problem.modes.iter().map(|mode| Mode {
         name: mode.name.clone(),
-        transition: mode.transition.map(Enclosure::exact),
+        motion: Motion::Linear(mode.motion.matrix().map(Enclosure::exact)),
         noise: mode.noise.map(Enclosure::exact),
     });
     let estimates = setup.initial.modes.iter().map(|estimate| Gaussian {
         mean: estimate.mean.map(Enclosure::exact),
         covariance: estimate.covariance.map(Enclosure::exact),
     });
-    let measurement = match &problem.measurement {
-        Measurement::Linear(h) => Measurement::Linear(h.map(Enclosure::exact)),
-        Measurement::Polar {
+    let sensor = match &problem.sensor {
+        Sensor::Linear(h) => Sensor::Linear(h.map(Enclosure::exact)),
+        Sensor::Polar {
             components,
             position,
-            sensor,
-        } => Measurement::Polar {
-            components: *components,
+            location,
+        } => Sensor::Polar {
+            components: components.clone(),
             position: *position,
-            sensor: sensor.map(Enclosure::exact),
+            location: location.map(Enclosure::exact),
         },
-        Measurement::Converted {
-            components,
-            position,
-            sensor,
-            conversion,
-        } => Measurement::Converted {
-            components: *components,
-            position: *position,
-            sensor: sensor.map(Enclosure::exact),
-            conversion: *conversion,
-        },
-    };
-    let rule = problem.rule.as_ref().map(|rule| Rule {
-        points: rule.points.iter().map(|point| point.map(Enclosure::exact)).collect(),
-        weights: list(&rule.weights),
-        covariance_weights: list(&rule.covariance_weights),
-    });
-    let given = problem.fixed_gains.as_ref().map(|modes| {
-        let exact = modes.iter().map(|mode| FixedGain {
-            gain: mode.gain.map(Enclosure::exact),
-            innovation_covariance: mode.innovation_covariance.map(Enclosure::exact),
-        });
-        exact.collect()
-    });
-    let exact = Problem {
-        modes: modes.collect(),
-        transition: problem.transition.iter().map(|row| list(row)).collect(),
-        measurement,
-        measurement_noise: problem.measurement_noise.map(Enclosure::exact),
-        rule,
-        fixed_gains: given,
+        Sensor::Function { .. } => unreachable!("no problem of this file has one"),
     };
     Setup {
-        equations: Equations::standard(&exact),
-        problem: exact,
+        equations: Equations::standard(),
+        problem: Problem {
+            modes: modes.collect(),
+            filters: problem.filters.iter().map(filter_on_enclosures).collect(),
+            interaction: problem.interaction,
+            chain: problem.chain.iter().map(|row| list(row)).collect(),
+            sensor,
+            measurement_noise: problem.measurement_noise.map(Enclosure::exact),
+        },
         initial: Initial {
             modes: estimates.collect(),
             mode_probabilities: list(&setup.initial.mode_probabilities),
@@ -877,9 +770,35 @@ fn on_enclosures<const N: usize, const M: usize>(setup: &Setup<f64, N, M>) -> Se
         measurements: setup
             .measurements
             .iter()
-            .map(|z| z.map(|z| z.map(Enclosure::exact)))
+            .map(|z| z.as_ref().map(|z| z.map(Enclosure::exact)))
             .collect(),
     }
+}
+
+fn filter_on_enclosures(filter: &Filter<f64, Dyn, Dyn>) -> Filter<Enclosure, Dyn, Dyn> {
+    let transform = |transform: &Transform<f64, Dyn>| match transform {
+        Transform::Exact => Transform::Exact,
+        Transform::Points(rule) => Transform::Points(Rule {
+            points: rule.points.iter().map(|point| point.map(Enclosure::exact)).collect(),
+            weights: list(&rule.weights),
+            covariance_weights: list(&rule.covariance_weights),
+        }),
+    };
+    Filter {
+        predict: transform(&filter.predict),
+        update: match &filter.update {
+            Update::By(by) => Update::By(transform(by)),
+            Update::Converted(conversion) => Update::Converted(*conversion),
+            Update::Given(given) => Update::Given(FixedGain {
+                gain: given.gain.map(Enclosure::exact),
+                innovation_covariance: given.innovation_covariance.map(Enclosure::exact),
+            }),
+        },
+    }
+}
+
+fn list(values: &[f64]) -> Vec<Enclosure> {
+    values.iter().copied().map(Enclosure::exact).collect()
 }
 
 /// The number that is enclosed, as a double; not a number if there is no answer, or none of fifteen digits. An enclosure of zero counts

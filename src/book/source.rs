@@ -29,7 +29,7 @@ pub struct Item {
     pub path: String,
     /// The line of its name.
     pub line: usize,
-    /// Its name, with that of its type where it has one: `mixture_mean`, `Measurement::mean`.
+    /// Its name, with that of its type where it has one: `mixture_mean`, `Sensor::mean`.
     pub name: String,
     /// What it is: function, method, constant, type, variant, field.
     pub kind: &'static str,

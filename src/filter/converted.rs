@@ -10,9 +10,10 @@
 //! The position of a measurement is where its range and bearing point, whatever turn the bearing is counted from: no residual of angles is
 //! ever formed, and there is none to be wrapped. The conversions themselves are in [`crate::model::conversion`].
 
-use crate::model::Measurement;
+use crate::matrix::{Holds, Shapes, rows};
+use crate::model::{Conversion, Sensor};
 use crate::number::Real;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{Dim, OMatrix, OVector, U1};
 
 /// The converted measurement, in the coordinates of the state: the sensor's place plus the position seen from there.
 ///
@@ -28,39 +29,43 @@ use nalgebra::{SMatrix, SVector};
 ///
 /// Source: sustika2015, section 3.1; [`Conversion::position`](crate::model::conversion::Conversion::position).
 ///
-/// A measurement that is not converted has no answer.
+/// None if the sensor does not report one range and one bearing.
 ///
 /// Example: 5 m straight ahead, along x, of a sensor at (100, 20).
 ///
 /// ```
 /// use immaculate::filter::converted::converted_measurement;
-/// use immaculate::model::{Conversion, Measurement, PolarComponent};
-/// use nalgebra::{matrix, vector};
+/// use immaculate::model::{Conversion, Sensor, PolarComponent};
+/// use nalgebra::{U2, U4, matrix, vector};
 ///
-/// let radar = Measurement::<f64, 4, 2>::Converted {
-///     components: [PolarComponent::Range, PolarComponent::Bearing],
+/// let radar = Sensor::<f64, U4, U2>::Polar {
+///     components: vec![PolarComponent::Range, PolarComponent::Bearing],
 ///     position: [0, 2],
-///     sensor: [100.0, 20.0],
-///     conversion: Conversion::Standard,
+///     location: [100.0, 20.0],
 /// };
 /// let noise = matrix![4.0, 0.0; 0.0, 0.25];
 /// // 100 + 5 · cos 0, 20 + 5 · sin 0
-/// assert_eq!(converted_measurement(&radar, &vector![5.0, 0.0], &noise), vector![105.0, 20.0]);
+/// let position = converted_measurement(Conversion::Standard, &radar, &vector![5.0, 0.0], &noise);
+/// assert_eq!(position, Some(vector![105.0, 20.0]));
 /// ```
 ///
 /// Evidence: `a_converted_measurement_is_where_range_and_bearing_point` (property).
-pub fn converted_measurement<T: Real, const N: usize, const M: usize>(
-    measurement: &Measurement<T, N, M>,
-    z: &SVector<T, M>,
-    noise: &SMatrix<T, M, M>,
-) -> SVector<T, M> {
-    let (Measurement::Converted { sensor, conversion, .. }, Some([r, b])) =
-        (measurement, measurement.range_and_bearing())
-    else {
-        return SVector::from_fn(|_, _| T::undecided());
+pub fn converted_measurement<T: Real, N: Dim, M: Dim>(
+    conversion: Conversion,
+    sensor: &Sensor<T, N, M>,
+    z: &OVector<T, M>,
+    noise: &OMatrix<T, M, M>,
+) -> Option<OVector<T, M>>
+where
+    Shapes: Holds<N, M>,
+{
+    let [r, b] = sensor.range_and_bearing()?;
+    let Sensor::Polar { location, .. } = sensor else {
+        return None;
     };
     let position = conversion.position(&z[r], &z[b], &noise[(b, b)]);
-    SVector::from_fn(|row, _| sensor[row].clone() + position[row].clone())
+    let converted = |row: usize| location[row].clone() + position[row].clone();
+    Some(OVector::from_fn_generic(rows(z), U1, |row, _| converted(row)))
 }
 
 /// The covariance of the converted measurement, R^c of a range and a bearing.
@@ -77,71 +82,32 @@ pub fn converted_measurement<T: Real, const N: usize, const M: usize>(
 ///
 /// ```
 /// use immaculate::filter::converted::converted_covariance;
-/// use immaculate::model::{Conversion, Measurement, PolarComponent};
-/// use nalgebra::{matrix, vector};
+/// use immaculate::model::{Conversion, Sensor, PolarComponent};
+/// use nalgebra::{U2, U4, matrix, vector};
 ///
-/// let radar = Measurement::<f64, 4, 2>::Converted {
-///     components: [PolarComponent::Range, PolarComponent::Bearing],
+/// let radar = Sensor::<f64, U4, U2>::Polar {
+///     components: vec![PolarComponent::Range, PolarComponent::Bearing],
 ///     position: [0, 2],
-///     sensor: [100.0, 20.0],
-///     conversion: Conversion::Standard,
+///     location: [100.0, 20.0],
 /// };
 /// let noise = matrix![4.0, 0.0; 0.0, 0.25];
 /// // σ_r², 10² · ¼
-/// assert_eq!(converted_covariance(&radar, &vector![10.0, 0.0], &noise), matrix![4.0, 0.0; 0.0, 25.0]);
+/// let covariance = converted_covariance(Conversion::Standard, &radar, &vector![10.0, 0.0], &noise);
+/// assert_eq!(covariance, Some(matrix![4.0, 0.0; 0.0, 25.0]));
 /// ```
 ///
 /// Evidence: `the_converted_covariance_does_not_depend_on_the_order_of_the_components` (property).
-pub fn converted_covariance<T: Real, const N: usize, const M: usize>(
-    measurement: &Measurement<T, N, M>,
-    z: &SVector<T, M>,
-    noise: &SMatrix<T, M, M>,
-) -> SMatrix<T, M, M> {
-    let (Measurement::Converted { conversion, .. }, Some([r, b])) = (measurement, measurement.range_and_bearing())
-    else {
-        return SMatrix::from_fn(|_, _| T::undecided());
-    };
+pub fn converted_covariance<T: Real, N: Dim, M: Dim>(
+    conversion: Conversion,
+    sensor: &Sensor<T, N, M>,
+    z: &OVector<T, M>,
+    noise: &OMatrix<T, M, M>,
+) -> Option<OMatrix<T, M, M>>
+where
+    Shapes: Holds<N, M>,
+{
+    let [r, b] = sensor.range_and_bearing()?;
     let covariance = conversion.covariance(&z[r], &z[b], &noise[(r, r)], &noise[(b, b)]);
-    SMatrix::from_fn(|row, column| covariance[(row, column)].clone())
-}
-
-/// The position of a state as range and bearing from the sensor, in the order of the measurement's components: where R^c is evaluated by
-/// those who take it at the prediction instead of at the measurement.
-///
-/// Source: liu2017 (31).
-///
-/// Example: 3 m and 4 m from the sensor, along x and y.
-///
-/// ```
-/// use immaculate::filter::converted::polar_position;
-/// use immaculate::{model::{Conversion, Measurement, PolarComponent}, number::Real};
-/// use nalgebra::vector;
-///
-/// let radar = Measurement::<f64, 4, 2>::Converted {
-///     components: [PolarComponent::Bearing, PolarComponent::Range],
-///     position: [0, 2],
-///     sensor: [100.0, 20.0],
-///     conversion: Conversion::Standard,
-/// };
-/// // In the order of the components: the angle of (3, 4), and √(3² + 4²).
-/// assert_eq!(polar_position(&radar, &vector![103.0, 7.0, 24.0, 8.0]), vector![Real::atan2(&4.0, &3.0), 5.0]);
-/// ```
-pub fn polar_position<T: Real, const N: usize, const M: usize>(
-    measurement: &Measurement<T, N, M>,
-    state: &SVector<T, N>,
-) -> SVector<T, M> {
-    match measurement {
-        Measurement::Converted {
-            components,
-            position,
-            sensor,
-            ..
-        } => Measurement::Polar {
-            components: *components,
-            position: *position,
-            sensor: sensor.clone(),
-        }
-        .of(state),
-        _ => measurement.of(state),
-    }
+    let entry = |row, column| covariance[(row, column)].clone();
+    Some(OMatrix::from_fn_generic(rows(z), rows(z), entry))
 }

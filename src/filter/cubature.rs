@@ -5,15 +5,18 @@
 //!
 //! ```text
 //! x̂⁰, P⁰ ─ cholesky ─▶ S ─ point ─▶ X ─ propagated_point ─▶ X* ─ weighted_mean, weighted_covariance ─▶ x̂⁻, P⁻
-//! x̂⁻, P⁻ ─ cholesky ─▶ S ─ point ─▶ X ─ Measurement::of ──▶ Z ─ Measurement::mean ─▶ ẑ
+//! x̂⁻, P⁻ ─ cholesky ─▶ S ─ point ─▶ X ─ Sensor::of ──▶ Z ─ Sensor::mean ─▶ ẑ
 //!                                   └──────────────────────┴─ innovation_covariance, cross_covariance ─▶ S, C ─▶ super::update
 //! ```
 //!
 //! The equations are in the centred form of liu2017. Those of zhu2016 about the origin are in [`super::raw`].
 
-use crate::model::Measurement;
+use crate::gaussian::Gaussian;
+use crate::matrix::{Holds, NotPositiveDefinite, Shapes, cholesky, rows};
+use crate::model::Sensor;
 use crate::number::{Field, Real};
-use nalgebra::{SMatrix, SVector};
+use crate::rule::Rule;
+use nalgebra::{Dim, OMatrix, OVector, U1};
 
 /// A point of the estimate — sustika2015 (27)-(29), zhu2016 (2)-(8), (28)-(34), liu2017 (14), (18).
 ///
@@ -23,7 +26,7 @@ use nalgebra::{SMatrix, SVector};
 ///
 /// | paper | here          | shape | meaning                                                                    |
 /// |-------|---------------|-------|----------------------------------------------------------------------------|
-/// | S     | `square_root` | N × N | Cholesky factor of the covariance, [`cholesky`](crate::matrix::cholesky)    |
+/// | S     | `square_root` | N × N | Cholesky factor of the covariance, [`cholesky`]    |
 /// | ξ     | `point`       | N     | a point of the rule for the standard Gaussian                               |
 /// | x̂     | `mean`        | N     | the centre                                                                 |
 ///
@@ -52,12 +55,46 @@ use nalgebra::{SMatrix, SVector};
 /// Errata: liu2017 (14) leaves the hat off the mean, and zhu2016 (2), (28) give the centre a superfluous index (notational).
 ///
 /// Evidence: `a_linear_filter_with_any_rule_of_degree_two_is_the_kalman_filter` (symbolic).
-pub fn point<T: Field, const N: usize>(
-    square_root: &SMatrix<T, N, N>,
-    point: &SVector<T, N>,
-    mean: &SVector<T, N>,
-) -> SVector<T, N> {
+pub fn point<T: Field, N: Dim>(
+    square_root: &OMatrix<T, N, N>,
+    point: &OVector<T, N>,
+    mean: &OVector<T, N>,
+) -> OVector<T, N>
+where
+    Shapes: Holds<N>,
+{
     square_root * point + mean
+}
+
+/// All points of an estimate: [`point`](fn@point) for each ξ of the rule, with the Cholesky factor of the covariance.
+///
+/// Source: sustika2015 (27)-(29), zhu2016 (1)-(8), (27)-(34), liu2017 (14), (18).
+///
+/// Example: two points, one deviation of 2 beside the mean 5.
+///
+/// ```
+/// use immaculate::{filter::cubature::points, gaussian::Gaussian, rule::{Rule, third_degree::third_degree}};
+/// use nalgebra::{matrix, vector};
+///
+/// let rule = Rule::from_exact(&third_degree(1)?)?;
+/// let estimate = Gaussian { mean: vector![5.0], covariance: matrix![4.0] };
+/// assert_eq!(points(&rule, &estimate).unwrap(), [vector![7.0], vector![3.0]]);
+/// # Ok::<(), immaculate::rule::InvalidRule>(())
+/// ```
+///
+/// # Errors
+///
+/// [`NotPositiveDefinite`] as of [`cholesky`].
+pub fn points<T: Real, N: Dim>(
+    rule: &Rule<T, N>,
+    estimate: &Gaussian<T, N>,
+) -> Result<Vec<OVector<T, N>>, NotPositiveDefinite>
+where
+    Shapes: Holds<N>,
+{
+    let root = cholesky(&estimate.covariance)?;
+    let points = rule.points.iter().map(|xi| point(&root, xi, &estimate.mean));
+    Ok(points.collect())
 }
 
 /// A propagated point — zhu2016 (14)-(20), liu2017 (14).
@@ -82,10 +119,10 @@ pub fn point<T: Field, const N: usize>(
 /// ```
 ///
 /// Evidence: as [`point`](fn@point).
-pub fn propagated_point<T: Field, const N: usize>(
-    transition: &SMatrix<T, N, N>,
-    point: &SVector<T, N>,
-) -> SVector<T, N> {
+pub fn propagated_point<T: Field, N: Dim>(transition: &OMatrix<T, N, N>, point: &OVector<T, N>) -> OVector<T, N>
+where
+    Shapes: Holds<N>,
+{
     transition * point
 }
 
@@ -112,8 +149,11 @@ pub fn propagated_point<T: Field, const N: usize>(
 /// ```
 ///
 /// Evidence: as [`point`](fn@point).
-pub fn weighted_mean<T: Field, const N: usize>(weights: &[T], points: &[SVector<T, N>]) -> SVector<T, N> {
-    let mut mean = SVector::zeros();
+pub fn weighted_mean<T: Field, N: Dim>(weights: &[T], points: &[OVector<T, N>]) -> OVector<T, N>
+where
+    Shapes: Holds<N>,
+{
+    let mut mean = OVector::zeros_generic(rows(&points[0]), U1);
     for (weight, point) in weights.iter().zip(points) {
         mean += point * weight.clone();
     }
@@ -151,12 +191,15 @@ pub fn weighted_mean<T: Field, const N: usize>(weights: &[T], points: &[SVector<
 /// Errata: liu2017 (17) is typeset with Q inside the braces of the sum (notational as long as the weights sum to one).
 ///
 /// Evidence: as [`point`](fn@point), `raw_and_centred_second_moments_agree` (symbolic).
-pub fn weighted_covariance<T: Field, const N: usize>(
+pub fn weighted_covariance<T: Field, N: Dim>(
     weights: &[T],
-    points: &[SVector<T, N>],
-    mean: &SVector<T, N>,
-    noise: &SMatrix<T, N, N>,
-) -> SMatrix<T, N, N> {
+    points: &[OVector<T, N>],
+    mean: &OVector<T, N>,
+    noise: &OMatrix<T, N, N>,
+) -> OMatrix<T, N, N>
+where
+    Shapes: Holds<N>,
+{
     let mut covariance = noise.clone();
     for (weight, point) in weights.iter().zip(points) {
         let deviation = point - mean;
@@ -175,17 +218,17 @@ pub fn weighted_covariance<T: Field, const N: usize>(
 /// |-------|---------------|-------|-------------------------------------------------------------|
 /// | wₛ    | `weights`     | L     | the rule's weights for covariances                           |
 /// | Zₛ    | `values`      | L × M | the measurements of the points, angles' differences wrapped  |
-/// | ẑ     | `mean`        | M     | predicted measurement, [`Measurement::mean`]                 |
+/// | ẑ     | `mean`        | M     | predicted measurement, [`Sensor::mean`]                 |
 /// | R     | `noise`       | M × M | measurement noise                                            |
 ///
 /// Example: the points drawn afresh from 10 and 25 are 15 and 5; of a sensor that sees twice the state they are 30 and 10. The propagated
 /// ones, 14 and 6, are too near to each other: they know nothing of Q.
 ///
 /// ```
-/// use immaculate::{filter::cubature::innovation_covariance, model::Measurement};
+/// use immaculate::{filter::cubature::innovation_covariance, model::Sensor};
 /// use nalgebra::{matrix, vector};
 ///
-/// let (sensor, weights) = (Measurement::Linear(matrix![2.0]), [0.5, 0.5]);
+/// let (sensor, weights) = (Sensor::Linear(matrix![2.0]), [0.5, 0.5]);
 /// let of = |values: [f64; 2]| {
 ///     innovation_covariance(&sensor, &weights, &values.map(|z| vector![z]), &vector![20.0], &matrix![100.0])
 /// };
@@ -196,16 +239,19 @@ pub fn weighted_covariance<T: Field, const N: usize>(
 /// Errata: R is typeset inside the sum, as Q in (17) (notational).
 ///
 /// Evidence: as [`point`](fn@point).
-pub fn innovation_covariance<T: Real, const N: usize, const M: usize>(
-    measurement: &Measurement<T, N, M>,
+pub fn innovation_covariance<T: Real, N: Dim, M: Dim>(
+    sensor: &Sensor<T, N, M>,
     weights: &[T],
-    values: &[SVector<T, M>],
-    mean: &SVector<T, M>,
-    noise: &SMatrix<T, M, M>,
-) -> SMatrix<T, M, M> {
+    values: &[OVector<T, M>],
+    mean: &OVector<T, M>,
+    noise: &OMatrix<T, M, M>,
+) -> OMatrix<T, M, M>
+where
+    Shapes: Holds<N, M>,
+{
     let mut covariance = noise.clone();
     for (weight, value) in weights.iter().zip(values) {
-        let deviation = measurement.difference(value, mean);
+        let deviation = sensor.difference(value, mean);
         covariance += (&deviation * deviation.transpose()) * weight.clone();
     }
     covariance
@@ -228,28 +274,31 @@ pub fn innovation_covariance<T: Real, const N: usize, const M: usize>(
 /// Example: the same points 15 and 5 with their measurements 30 and 10.
 ///
 /// ```
-/// use immaculate::{filter::cubature::cross_covariance, model::Measurement};
+/// use immaculate::{filter::cubature::cross_covariance, model::Sensor};
 /// use nalgebra::{matrix, vector};
 ///
 /// let (points, values) = ([vector![15.0], vector![5.0]], [vector![30.0], vector![10.0]]);
-/// let sensor = Measurement::Linear(matrix![2.0]);
+/// let sensor = Sensor::Linear(matrix![2.0]);
 /// let covariance = cross_covariance(&sensor, &[0.5, 0.5], &points, &vector![10.0], &values, &vector![20.0]);
 /// assert_eq!(covariance, matrix![50.0]); // ½ · 5 · 10 + ½ · (−5) · (−10)
 /// ```
 ///
 /// Evidence: as [`point`](fn@point).
-pub fn cross_covariance<T: Real, const N: usize, const M: usize>(
-    measurement: &Measurement<T, N, M>,
+pub fn cross_covariance<T: Real, N: Dim, M: Dim>(
+    sensor: &Sensor<T, N, M>,
     weights: &[T],
-    points: &[SVector<T, N>],
-    mean: &SVector<T, N>,
-    values: &[SVector<T, M>],
-    value_mean: &SVector<T, M>,
-) -> SMatrix<T, N, M> {
-    let mut covariance = SMatrix::zeros();
+    points: &[OVector<T, N>],
+    mean: &OVector<T, N>,
+    values: &[OVector<T, M>],
+    value_mean: &OVector<T, M>,
+) -> OMatrix<T, N, M>
+where
+    Shapes: Holds<N, M>,
+{
+    let mut covariance = OMatrix::zeros_generic(rows(mean), rows(value_mean));
     for ((weight, point), value) in weights.iter().zip(points).zip(values) {
         let state_deviation = point - mean;
-        let deviation = measurement.difference(value, value_mean);
+        let deviation = sensor.difference(value, value_mean);
         covariance += (state_deviation * deviation.transpose()) * weight.clone();
     }
     covariance

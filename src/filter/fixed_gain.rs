@@ -2,9 +2,11 @@
 //!
 //! After this file the reader knows what is left of a mode's filter once its covariances are gone: two constant matrices, one that
 //! corrects the prediction and one that says how likely a residual is. Where they come from is in [`crate::steady::gains`] and
-//! [`crate::steady::riccati`]; the cycle that uses them is [`crate::imm::fixed_gain`].
+//! [`crate::steady::riccati`]; a filter that has them is [`Filter::given`](super::Filter::given).
 
-use nalgebra::SMatrix;
+use crate::matrix::{Holds, Shapes};
+use crate::number::Field;
+use nalgebra::{Dim, OMatrix};
 
 /// Gain and innovation covariance of one mode, both constant — derbez2000 (fixed-gain-update), (fixed-gain-likelihood).
 ///
@@ -38,14 +40,17 @@ use nalgebra::SMatrix;
 /// ```
 ///
 /// Errata: the update is printed without the superscript 0 of the mixed state, although "one proceeds with the usual IMM algorithm".
-/// Both readings exist and are kept apart: [`Equations::fixed_gain`](crate::imm::Equations::fixed_gain) and
-/// [`Equations::fixed_gain_unmixed`](crate::imm::Equations::fixed_gain_unmixed).
+/// Both readings exist and are kept apart: [`Interaction::Imm`](crate::imm::Interaction::Imm) and
+/// [`Interaction::Unmixed`](crate::imm::Interaction::Unmixed).
 ///
 /// Evidence: `a_kalman_filter_at_its_equilibrium_is_the_fixed_gain_filter` (exact).
 #[derive(Debug, Clone, PartialEq)]
-pub struct FixedGain<T, const N: usize, const M: usize> {
+pub struct FixedGain<T: Field, N: Dim, M: Dim>
+where
+    Shapes: Holds<N, M>,
+{
     /// K.
-    pub gain: SMatrix<T, N, M>,
+    pub gain: OMatrix<T, N, M>,
     /// S.
-    pub innovation_covariance: SMatrix<T, M, M>,
+    pub innovation_covariance: OMatrix<T, M, M>,
 }

@@ -11,9 +11,9 @@
 //! The examples of this file, of [`cubature`](super::cubature), [`raw`](super::raw) and [`update`](super::update) are one step of one
 //! filter: x̂⁰ = 5 and P⁰ = 4, F = 2 and Q = 9, H = 2 and R = 100, z = 24. It is put together in the [head of the folder](super).
 
-use crate::matrix::mirrored;
+use crate::matrix::{Holds, Shapes, mirrored};
 use crate::number::Field;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{Dim, OMatrix, OVector};
 
 /// Predicted mean, x̂⁻ = F x̂ — derbez2000 (2), sustika2015 (14).
 ///
@@ -29,7 +29,10 @@ use nalgebra::{SMatrix, SVector};
 /// ```
 ///
 /// Evidence: `a_linear_filter_with_any_rule_of_degree_two_is_the_kalman_filter` (symbolic).
-pub fn predicted_mean<T: Field, const N: usize>(transition: &SMatrix<T, N, N>, mean: &SVector<T, N>) -> SVector<T, N> {
+pub fn predicted_mean<T: Field, N: Dim>(transition: &OMatrix<T, N, N>, mean: &OVector<T, N>) -> OVector<T, N>
+where
+    Shapes: Holds<N>,
+{
     transition * mean
 }
 
@@ -47,11 +50,14 @@ pub fn predicted_mean<T: Field, const N: usize>(transition: &SMatrix<T, N, N>, m
 /// ```
 ///
 /// Evidence: `the_kalman_update_is_conditioning_of_a_gaussian` (symbolic).
-pub fn predicted_covariance<T: Field, const N: usize>(
-    transition: &SMatrix<T, N, N>,
-    covariance: &SMatrix<T, N, N>,
-    noise: &SMatrix<T, N, N>,
-) -> SMatrix<T, N, N> {
+pub fn predicted_covariance<T: Field, N: Dim>(
+    transition: &OMatrix<T, N, N>,
+    covariance: &OMatrix<T, N, N>,
+    noise: &OMatrix<T, N, N>,
+) -> OMatrix<T, N, N>
+where
+    Shapes: Holds<N>,
+{
     mirrored(transition * covariance * transition.transpose() + noise)
 }
 
@@ -69,10 +75,13 @@ pub fn predicted_covariance<T: Field, const N: usize>(
 /// ```
 ///
 /// Evidence: `the_kalman_update_is_conditioning_of_a_gaussian` (symbolic).
-pub fn cross_covariance<T: Field, const N: usize, const M: usize>(
-    covariance: &SMatrix<T, N, N>,
-    h: &SMatrix<T, M, N>,
-) -> SMatrix<T, N, M> {
+pub fn cross_covariance<T: Field, N: Dim, M: Dim>(
+    covariance: &OMatrix<T, N, N>,
+    h: &OMatrix<T, M, N>,
+) -> OMatrix<T, N, M>
+where
+    Shapes: Holds<N, M>,
+{
     covariance * h.transpose()
 }
 
@@ -90,10 +99,13 @@ pub fn cross_covariance<T: Field, const N: usize, const M: usize>(
 /// ```
 ///
 /// Evidence: `the_kalman_update_is_conditioning_of_a_gaussian` (symbolic).
-pub fn innovation_covariance<T: Field, const N: usize, const M: usize>(
-    h: &SMatrix<T, M, N>,
-    covariance: &SMatrix<T, N, N>,
-    noise: &SMatrix<T, M, M>,
-) -> SMatrix<T, M, M> {
+pub fn innovation_covariance<T: Field, N: Dim, M: Dim>(
+    h: &OMatrix<T, M, N>,
+    covariance: &OMatrix<T, N, N>,
+    noise: &OMatrix<T, M, M>,
+) -> OMatrix<T, M, M>
+where
+    Shapes: Holds<N, M>,
+{
     h * covariance * h.transpose() + noise
 }

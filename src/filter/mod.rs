@@ -11,6 +11,7 @@
 //!
 //! Reading order:
 //!
+//! - [`kind`]: which of these a filter is, said once;
 //! - [`kalman`]: the linear equations;
 //! - [`cubature`]: the same moments by points and weights, in the centred form of liu2017;
 //! - [`raw`]: the moments about the origin that zhu2016 prints, equal in exact arithmetic and poorer in floating point;
@@ -22,7 +23,7 @@
 //!
 //! ```
 //! use immaculate::filter::{cubature, kalman, update};
-//! use immaculate::{matrix::{cholesky, ldl}, model::Measurement};
+//! use immaculate::{matrix::{cholesky, ldl}, model::Sensor};
 //! use nalgebra::{matrix, vector};
 //!
 //! let (mean, covariance) = (vector![5.0], matrix![4.0]);
@@ -38,7 +39,7 @@
 //! assert_eq!(update::updated_covariance(&p, &w, &s), matrix![12.5]);
 //!
 //! // The two points of the third-degree rule in one dimension: ±1, half and half.
-//! let (weights, sensor) = ([0.5, 0.5], Measurement::Linear(h));
+//! let (weights, sensor) = ([0.5, 0.5], Sensor::Linear(h));
 //! let draw = |mean, covariance| {
 //!     let root = cholesky(covariance).unwrap();
 //!     [1.0, -1.0].map(|xi| cubature::point(&root, &vector![xi], mean))
@@ -56,5 +57,8 @@ pub mod converted;
 pub mod cubature;
 pub mod fixed_gain;
 pub mod kalman;
+pub mod kind;
 pub mod raw;
 pub mod update;
+
+pub use kind::{Filter, Transform, Update};

@@ -8,8 +8,9 @@
 //! raw moment of an angle depends on where the circle is cut, and for weights that sum to one, which the covariance weights of the
 //! (α, β, κ) unscented rule do not.
 
+use crate::matrix::{Holds, Shapes, rows};
 use crate::number::Field;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{Dim, OMatrix, OVector};
 
 /// Predicted covariance about the origin — zhu2016 (24)-(26).
 ///
@@ -47,12 +48,15 @@ use nalgebra::{SMatrix, SVector};
 /// Evidence: `raw_and_centred_second_moments_agree` (symbolic),
 /// `printed_predicted_covariance_is_a_raw_second_moment_without_noise`,
 /// `printed_upper_limit_counts_points_that_do_not_exist`, `the_raw_form_loses_the_digits_of_the_squared_position` (property).
-pub fn raw_covariance<T: Field, const N: usize>(
+pub fn raw_covariance<T: Field, N: Dim>(
     weights: &[T],
-    points: &[SVector<T, N>],
-    mean: &SVector<T, N>,
-    noise: &SMatrix<T, N, N>,
-) -> SMatrix<T, N, N> {
+    points: &[OVector<T, N>],
+    mean: &OVector<T, N>,
+    noise: &OMatrix<T, N, N>,
+) -> OMatrix<T, N, N>
+where
+    Shapes: Holds<N>,
+{
     raw_second_moment(weights, points) - mean * mean.transpose() + noise
 }
 
@@ -68,8 +72,11 @@ pub fn raw_covariance<T: Field, const N: usize>(
 /// ```
 ///
 /// Evidence: `printed_predicted_covariance_is_a_raw_second_moment_without_noise`.
-pub fn raw_second_moment<T: Field, const N: usize>(weights: &[T], points: &[SVector<T, N>]) -> SMatrix<T, N, N> {
-    let mut moment = SMatrix::zeros();
+pub fn raw_second_moment<T: Field, N: Dim>(weights: &[T], points: &[OVector<T, N>]) -> OMatrix<T, N, N>
+where
+    Shapes: Holds<N>,
+{
+    let mut moment = OMatrix::zeros_generic(rows(&points[0]), rows(&points[0]));
     for (weight, point) in weights.iter().zip(points) {
         moment += (point * point.transpose()) * weight.clone();
     }
@@ -102,14 +109,17 @@ pub fn raw_second_moment<T: Field, const N: usize>(weights: &[T], points: &[SVec
 /// ```
 ///
 /// Evidence: `raw_and_centred_second_moments_agree` (symbolic).
-pub fn raw_cross_covariance<T: Field, const N: usize, const M: usize>(
+pub fn raw_cross_covariance<T: Field, N: Dim, M: Dim>(
     weights: &[T],
-    points: &[SVector<T, N>],
-    mean: &SVector<T, N>,
-    values: &[SVector<T, M>],
-    value_mean: &SVector<T, M>,
-) -> SMatrix<T, N, M> {
-    let mut moment = SMatrix::zeros();
+    points: &[OVector<T, N>],
+    mean: &OVector<T, N>,
+    values: &[OVector<T, M>],
+    value_mean: &OVector<T, M>,
+) -> OMatrix<T, N, M>
+where
+    Shapes: Holds<N, M>,
+{
+    let mut moment = OMatrix::zeros_generic(rows(mean), rows(value_mean));
     for ((weight, point), value) in weights.iter().zip(points).zip(values) {
         moment += (point * value.transpose()) * weight.clone();
     }

@@ -6,9 +6,9 @@
 //! C, S ─ gain ─▶ W         x̂⁻, W, ν = z − ẑ ─ updated_mean ─▶ x̂         P⁻, W, S ─ updated_covariance ─▶ P
 //! ```
 
-use crate::matrix::{Ldl, mirrored, solve};
+use crate::matrix::{Holds, Ldl, Shapes, mirrored, solve};
 use crate::number::Field;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{Dim, OMatrix, OVector};
 
 /// Gain — derbez2000 (2), sustika2015 (17), (34), zhu2016 (51), liu2017 (20).
 ///
@@ -36,10 +36,13 @@ use nalgebra::{SMatrix, SVector};
 /// ```
 ///
 /// Evidence: `the_kalman_update_is_conditioning_of_a_gaussian` (symbolic).
-pub fn gain<T: Field, const N: usize, const M: usize>(
-    cross_covariance: &SMatrix<T, N, M>,
+pub fn gain<T: Field, N: Dim, M: Dim>(
+    cross_covariance: &OMatrix<T, N, M>,
     innovation_covariance: &Ldl<T, M>,
-) -> SMatrix<T, N, M> {
+) -> OMatrix<T, N, M>
+where
+    Shapes: Holds<N, M>,
+{
     solve(innovation_covariance, &cross_covariance.transpose()).transpose()
 }
 
@@ -70,11 +73,14 @@ pub fn gain<T: Field, const N: usize, const M: usize>(
 /// Errata: derbez2000 (8) has the product from the first matrix to the last.
 ///
 /// Evidence: `the_kalman_update_is_conditioning_of_a_gaussian` (symbolic), `printed_order_of_the_product_is_not_the_recursion` (exact).
-pub fn updated_mean<T: Field, const N: usize, const M: usize>(
-    mean: &SVector<T, N>,
-    gain: &SMatrix<T, N, M>,
-    innovation: &SVector<T, M>,
-) -> SVector<T, N> {
+pub fn updated_mean<T: Field, N: Dim, M: Dim>(
+    mean: &OVector<T, N>,
+    gain: &OMatrix<T, N, M>,
+    innovation: &OVector<T, M>,
+) -> OVector<T, N>
+where
+    Shapes: Holds<N, M>,
+{
     mean + gain * innovation
 }
 
@@ -111,10 +117,13 @@ pub fn updated_mean<T: Field, const N: usize, const M: usize>(
 ///
 /// Evidence: `the_kalman_update_is_conditioning_of_a_gaussian` (symbolic),
 /// `printed_update_from_the_mixed_covariance_is_not_conditioning` (exact).
-pub fn updated_covariance<T: Field, const N: usize, const M: usize>(
-    covariance: &SMatrix<T, N, N>,
-    gain: &SMatrix<T, N, M>,
-    innovation_covariance: &SMatrix<T, M, M>,
-) -> SMatrix<T, N, N> {
+pub fn updated_covariance<T: Field, N: Dim, M: Dim>(
+    covariance: &OMatrix<T, N, N>,
+    gain: &OMatrix<T, N, M>,
+    innovation_covariance: &OMatrix<T, M, M>,
+) -> OMatrix<T, N, N>
+where
+    Shapes: Holds<N, M>,
+{
     mirrored(covariance - gain * innovation_covariance * gain.transpose())
 }

@@ -8,12 +8,13 @@
 //!                                                                    └─ no detection ─▶ the prediction stays ──────┘
 //! ```
 
-use super::quantity::Quantity;
+use super::failure::{Cause, Failure, failure, not_definite};
+use super::record::Quantity;
 use super::{Equations, Initial, InvalidProblem, Problem, Step};
-use crate::matrix::{NotPositiveDefinite, all_finite, is_finite};
-use crate::model::{Measurement, PolarComponent};
-use crate::number::Real;
-use nalgebra::SVector;
+use crate::matrix::{Holds, Shapes, all_finite, is_finite};
+use crate::model::PolarComponent;
+use crate::number::{Field, Real};
+use nalgebra::{Dim, OVector};
 
 /// Is told of every traced value of a step, in the order in which they are computed, and may put others in their place: what
 /// follows is then computed from these.
@@ -24,7 +25,7 @@ use nalgebra::SVector;
 ///
 /// ```
 /// use immaculate::{gaussian::Gaussian, imm::{Equations, Imm, Initial, Observer, Problem, Quantity, Step}};
-/// use immaculate::model::{Measurement, motion::Mode};
+/// use immaculate::model::{Sensor, motion::{Mode, Motion}};
 /// use nalgebra::{matrix, vector};
 ///
 /// struct Names(Vec<&'static str>);
@@ -35,78 +36,36 @@ use nalgebra::SVector;
 /// }
 ///
 /// let problem = Problem {
-///     modes: vec![Mode { name: "walk".into(), transition: matrix![1.0], noise: matrix![1.0] }],
-///     transition: vec![vec![1.0]],
-///     measurement: Measurement::Linear(matrix![1.0]),
+///     modes: vec![Mode { name: "walk".into(), motion: Motion::Linear(matrix![1.0]), noise: matrix![1.0] }],
+///     chain: vec![vec![1.0]],
+///     sensor: Sensor::Linear(matrix![1.0]),
 ///     measurement_noise: matrix![2.0],
-///     rule: None,
-///     fixed_gains: None,
+///     filters: vec![Filter::kalman()],
+///     interaction: Interaction::Imm,
 /// };
 /// let initial = Initial {
 ///     modes: vec![Gaussian { mean: vector![0.0], covariance: matrix![1.0] }],
 ///     mode_probabilities: vec![1.0],
 /// };
 /// let mut names = Names(Vec::new());
-/// Imm::new(problem, Equations::kalman(), &initial)?.step_observed(None, &mut names)?;
+/// Imm::new(problem, &initial)?.step_observed(None, &mut names)?;
 /// assert_eq!(names.0[2..6], ["mixed.mean", "mixed.covariance", "predicted.mean", "predicted.covariance"]);
 /// assert!(!names.0.contains(&"gain")); // without a detection
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub trait Observer<T, const N: usize, const M: usize> {
+pub trait Observer<T: Field, N: Dim, M: Dim>
+where
+    Shapes: Holds<N, M>,
+{
     /// The quantity of mode j (0 for a quantity of all modes together) has just been computed and stands in the record.
     fn computed(&mut self, quantity: Quantity, j: usize, now: &mut Step<T, N, M>);
 }
 
-impl<T, const N: usize, const M: usize> Observer<T, N, M> for () {
+impl<T: Field, N: Dim, M: Dim> Observer<T, N, M> for ()
+where
+    Shapes: Holds<N, M>,
+{
     fn computed(&mut self, _: Quantity, _: usize, _: &mut Step<T, N, M>) {}
-}
-
-/// A step that could not be computed.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("step {step}, mode `{mode}`, {equation}: {cause}")]
-pub struct Failure {
-    /// The step, counted from 1.
-    pub step: usize,
-    /// The name of the mode, or "all".
-    pub mode: String,
-    /// The equation that had no answer.
-    pub equation: &'static str,
-    /// Why.
-    pub cause: Cause,
-}
-
-/// Why a step could not be computed.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum Cause {
-    /// A covariance stopped being positive definite.
-    #[error("the {what} {pivot}")]
-    NotPositiveDefinite {
-        /// Which covariance.
-        what: &'static str,
-        /// The pivot.
-        pivot: NotPositiveDefinite,
-    },
-    /// The measurement has an entry that is not finite.
-    #[error("the measurement has an entry that is not finite")]
-    MeasurementNotFinite,
-    /// A range below zero.
-    #[error("the measured range {range} is negative; a range is a distance")]
-    NegativeRange {
-        /// The range.
-        range: String,
-    },
-    /// A bearing outside two turns of zero.
-    #[error("the measured bearing {bearing} is outside ±2π: is it in degrees?")]
-    BearingOutOfRange {
-        /// The bearing.
-        bearing: String,
-    },
-    /// The combined estimate has an entry that is not finite: the problem's numbers are beyond the number system.
-    #[error("the combined estimate has an entry that is not finite")]
-    EstimateNotFinite,
-    /// The likelihood of the measurement is beyond the number system.
-    #[error("the log-likelihood of the measurement under all modes together is not finite")]
-    NoEvidence,
 }
 
 /// The filter: a problem, a table of equations, and the step before and now.
@@ -115,22 +74,22 @@ pub enum Cause {
 ///
 /// ```
 /// use immaculate::{gaussian::Gaussian, imm::{Equations, Imm, Initial, Problem}};
-/// use immaculate::model::{Measurement, motion::Mode};
+/// use immaculate::model::{Sensor, motion::{Mode, Motion}};
 /// use nalgebra::{matrix, vector};
 ///
 /// let problem = Problem {
-///     modes: vec![Mode { name: "walk".into(), transition: matrix![1.0], noise: matrix![1.0] }],
-///     transition: vec![vec![1.0]],
-///     measurement: Measurement::Linear(matrix![1.0]),
+///     modes: vec![Mode { name: "walk".into(), motion: Motion::Linear(matrix![1.0]), noise: matrix![1.0] }],
+///     chain: vec![vec![1.0]],
+///     sensor: Sensor::Linear(matrix![1.0]),
 ///     measurement_noise: matrix![2.0],
-///     rule: None,
-///     fixed_gains: None,
+///     filters: vec![Filter::kalman()],
+///     interaction: Interaction::Imm,
 /// };
 /// let initial = Initial {
 ///     modes: vec![Gaussian { mean: vector![0.0], covariance: matrix![1.0] }],
 ///     mode_probabilities: vec![1.0],
 /// };
-/// let mut filter = Imm::new(problem, Equations::kalman(), &initial).unwrap();
+/// let mut filter = Imm::new(problem, &initial).unwrap();
 /// // The prediction has the variance 1 + 1, the gain is 2 / (2 + 2), and 0 + ½ · (4 − 0) = 2.
 /// assert_eq!(filter.step(Some(&vector![4.0])).unwrap().combined.mean, vector![2.0]);
 /// // A missed detection: the mean stays, the variance 2 − ½ · 4 · ½ = 1 grows by 1.
@@ -138,57 +97,67 @@ pub enum Cause {
 /// assert_eq!((missed.combined.mean, missed.combined.covariance), (vector![2.0], matrix![2.0]));
 /// ```
 #[derive(Debug, Clone)]
-pub struct Imm<T, const N: usize, const M: usize> {
+pub struct Imm<T: Field, N: Dim, M: Dim>
+where
+    Shapes: Holds<N, M>,
+{
     problem: Problem<T, N, M>,
     equations: Equations<T, N, M>,
     previous: Step<T, N, M>,
     now: Step<T, N, M>,
 }
 
-impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
-    /// A filter at step 0.
+/// The equations, the problem, the step before, and the step so far.
+type Parts<'a, T, N, M> = (
+    &'a Equations<T, N, M>,
+    &'a Problem<T, N, M>,
+    &'a Step<T, N, M>,
+    &'a mut Step<T, N, M>,
+);
+
+impl<T: Real, N: Dim, M: Dim> Imm<T, N, M>
+where
+    Shapes: Holds<N, M>,
+{
+    /// The filter proper at step 0, [`Equations::standard`].
     ///
     /// # Errors
     ///
-    /// [`InvalidProblem`] when the problem, the initial estimate or their match with the equations is wrong.
-    pub fn new(
+    /// [`InvalidProblem`] when the problem or the initial estimate is wrong.
+    pub fn new(problem: Problem<T, N, M>, initial: &Initial<T, N>) -> Result<Self, InvalidProblem> {
+        Self::with_equations(problem, Equations::standard(), initial)
+    }
+
+    /// A variant of the filter at step 0.
+    ///
+    /// # Errors
+    ///
+    /// As [`Imm::new`].
+    pub fn with_equations(
         problem: Problem<T, N, M>,
         equations: Equations<T, N, M>,
         initial: &Initial<T, N>,
     ) -> Result<Self, InvalidProblem> {
         problem.check(initial)?;
-        if equations.draws_points != problem.rule.is_some() {
-            return Err(InvalidProblem::Rule {
-                given: problem.rule.is_some(),
-            });
-        }
-        if equations.keeps_covariances == problem.fixed_gains.is_some() {
-            return Err(InvalidProblem::FixedGains {
-                given: problem.fixed_gains.is_some(),
-            });
-        }
-        let is_converted = problem.measurement.is_converted();
-        if equations.converts != is_converted {
-            return Err(InvalidProblem::Conversion { given: is_converted });
-        }
-        if !equations.draws_points && !is_converted && !matches!(problem.measurement, Measurement::Linear(_)) {
-            return Err(InvalidProblem::NotLinear);
-        }
         Ok(Self::unchecked(problem, equations, initial))
     }
 
     /// A filter at step 0 whose problem may be wrong on purpose: what a variant of the filter is run with.
     pub(crate) fn unchecked(problem: Problem<T, N, M>, equations: Equations<T, N, M>, initial: &Initial<T, N>) -> Self {
-        let points = problem.rule.as_ref().map_or(0, |rule| rule.points.len());
-        let mut now = Step::zeros(problem.modes.len(), points);
-        now.updated.clone_from(&initial.modes);
-        now.mode_probabilities.clone_from(&initial.mode_probabilities);
-        now.combined.mean = (equations.combined_mean)(&problem, &now, &now);
-        if equations.keeps_covariances {
-            now.combined.covariance = (equations.combined_covariance)(&problem, &now, &now);
-        } else {
-            now.forget_covariances();
+        let has_covariances = problem.has_covariances();
+        let mut estimates = initial.modes.clone();
+        if !has_covariances {
+            // A covariance that nobody computes is no number: a zero would be taken for certainty.
+            for estimate in &mut estimates {
+                estimate.covariance.fill(T::undecided());
+            }
         }
+        let mut now = Step::initial(&estimates, &initial.mode_probabilities);
+        now.combined.mean = (equations.combined_mean)(&problem, &now, &now, 0);
+        if has_covariances {
+            now.combined.covariance = (equations.combined_covariance)(&problem, &now, &now, 0);
+        }
+        now.combined_prediction.clone_from(&now.combined);
         Self {
             previous: now.clone(),
             problem,
@@ -212,12 +181,56 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
         &self.problem
     }
 
+    /// Goes on with another problem from the next step: another step length with its F and Q, another sensor, another chain.
+    ///
+    /// Example: a random walk that is seen twice as well from its second step on.
+    ///
+    /// ```
+    /// use immaculate::filter::Filter;
+    /// use immaculate::{gaussian::Gaussian, imm::{Imm, Initial, Interaction, Problem}};
+    /// use immaculate::model::{Sensor, motion::{Mode, Motion}};
+    /// use nalgebra::{matrix, vector};
+    ///
+    /// let mut problem = Problem {
+    ///     modes: vec![Mode { name: "walk".into(), motion: Motion::Linear(matrix![1.0]), noise: matrix![1.0] }],
+    ///     filters: vec![Filter::kalman()],
+    ///     interaction: Interaction::Imm,
+    ///     chain: vec![vec![1.0]],
+    ///     sensor: Sensor::Linear(matrix![1.0]),
+    ///     measurement_noise: matrix![2.0],
+    /// };
+    /// let estimate = Gaussian { mean: vector![0.0], covariance: matrix![1.0] };
+    /// let initial = Initial { modes: vec![estimate], mode_probabilities: vec![1.0] };
+    /// let mut filter = Imm::new(problem.clone(), &initial)?;
+    /// assert_eq!(filter.step(Some(&vector![4.0]))?.gains[0], matrix![0.5]); // (1 + 1) / (2 + 2)
+    /// problem.measurement_noise = matrix![1.0];
+    /// filter.change(problem)?;
+    /// assert_eq!(filter.step(Some(&vector![4.0]))?.gains[0], matrix![2.0 / 3.0]); // (1 + 1) / (2 + 1)
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`InvalidProblem`] when the problem is wrong, or has other modes or another state; the filter then keeps the one that it has.
+    pub fn change(&mut self, problem: Problem<T, N, M>) -> Result<(), InvalidProblem> {
+        let estimates = Initial {
+            modes: self.now.updated.clone(),
+            mode_probabilities: self.now.mode_probabilities.clone(),
+        };
+        problem.check_inputs(&estimates)?;
+        if problem.has_covariances() != self.problem.has_covariances() {
+            return Err(InvalidProblem::SomeGiven);
+        }
+        self.problem = problem;
+        Ok(())
+    }
+
     /// One step of the cycle, with a measurement or without a detection.
     ///
     /// # Errors
     ///
-    /// [`Failure`] with step, mode and equation when a value cannot be computed; the filter is then still at the step before.
-    pub fn step(&mut self, measurement: Option<&SVector<T, M>>) -> Result<&Step<T, N, M>, Failure> {
+    /// [`Failure`] with step, mode and value when a value cannot be computed; the filter is then still at the step before.
+    pub fn step(&mut self, measurement: Option<&OVector<T, M>>) -> Result<&Step<T, N, M>, Failure> {
         self.step_observed(measurement, &mut ())
     }
 
@@ -228,7 +241,7 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
     /// As [`Imm::step`].
     pub fn step_observed(
         &mut self,
-        measurement: Option<&SVector<T, M>>,
+        measurement: Option<&OVector<T, M>>,
         observer: &mut impl Observer<T, N, M>,
     ) -> Result<&Step<T, N, M>, Failure> {
         std::mem::swap(&mut self.previous, &mut self.now);
@@ -244,23 +257,26 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
     /// Fills in the record `now` from the record `previous`.
     fn advance(
         &mut self,
-        measurement: Option<&SVector<T, M>>,
+        measurement: Option<&OVector<T, M>>,
         observer: &mut impl Observer<T, N, M>,
     ) -> Result<(), Failure> {
+        self.now.clear();
         self.now.step = self.previous.step + 1;
         self.now.measurement = measurement.cloned();
         if let Some(z) = measurement {
             self.check_measurement(z)?;
         }
+        let modes = self.problem.modes.len();
         self.mix(observer);
-        for j in 0..self.problem.modes.len() {
+        for j in 0..modes {
             self.predict(j, observer)?;
         }
         self.combine_prediction(observer);
-        if measurement.is_some() {
-            self.convert(observer);
-            for j in 0..self.problem.modes.len() {
-                self.update(j, observer)?;
+        if let Some(z) = measurement {
+            self.convert(z, observer);
+            for j in 0..modes {
+                let (e, problem, previous, now) = self.parts();
+                update(e, problem, previous, now, z, j, observer)?;
             }
             self.weigh(observer)?;
         } else {
@@ -268,34 +284,32 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
         }
         self.combine(observer);
         let combined = &self.now.combined;
-        let is_finite = |covariance| !self.equations.keeps_covariances || all_finite(covariance);
-        if all_finite(&combined.mean) && is_finite(&combined.covariance) {
+        if all_finite(&combined.mean) && (!self.problem.has_covariances() || all_finite(&combined.covariance)) {
             return Ok(());
         }
-        Err(Failure {
-            step: self.now.step,
-            mode: "all".into(),
-            equation: "zhu2016 (60)",
-            cause: Cause::EstimateNotFinite,
-        })
+        Err(failure(
+            &self.problem,
+            &self.now,
+            None,
+            "combined",
+            Cause::EstimateNotFinite,
+        ))
     }
 
     /// Mode probabilities along the chain, and the estimates mixed accordingly.
     fn mix(&mut self, observer: &mut impl Observer<T, N, M>) {
         let (e, problem, previous, now) = self.parts();
-        let modes = problem.modes.len();
-        for j in 0..modes {
+        let has_covariances = problem.has_covariances();
+        for j in 0..problem.modes.len() {
             now.predicted_mode_probabilities[j] = (e.predicted_mode_probability)(problem, previous, now, j);
         }
         observer.computed(Quantity::PredictedModeProbabilities, 0, now);
-        for j in 0..modes {
-            for i in 0..modes {
-                now.mixing_probabilities[j][i] = (e.mixing_probability)(problem, previous, now, j, i);
-            }
+        for j in 0..problem.modes.len() {
+            now.mixing_probabilities[j] = (e.mixing_probabilities)(problem, previous, now, j);
             observer.computed(Quantity::MixingProbabilities, j, now);
             now.mixed[j].mean = (e.mixed_mean)(problem, previous, now, j);
             observer.computed(Quantity::MixedMean, j, now);
-            if e.keeps_covariances {
+            if has_covariances {
                 now.mixed[j].covariance = (e.mixed_covariance)(problem, previous, now, j);
                 observer.computed(Quantity::MixedCovariance, j, now);
             }
@@ -305,84 +319,49 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
     /// One mode's prediction, with points if its filter draws them.
     fn predict(&mut self, j: usize, observer: &mut impl Observer<T, N, M>) -> Result<(), Failure> {
         let (e, problem, previous, now) = self.parts();
-        if e.draws_points {
-            now.mixed_square_roots[j] = (e.mixed_square_root)(problem, previous, now, j)
-                .map_err(|pivot| failure(problem, now, j, "zhu2016 (1)", "mixed covariance", pivot))?;
-            for s in 0..now.mixed_points[j].len() {
-                now.mixed_points[j][s] = (e.mixed_point)(problem, previous, now, j, s);
-                now.propagated_points[j][s] = (e.propagated_point)(problem, previous, now, j, s);
-            }
-        }
+        let points = (e.mixed_points)(problem, previous, now, j)
+            .map_err(|pivot| not_definite(problem, now, j, Quantity::PredictedMean, "mixed covariance", pivot))?;
+        now.mixed_points.push(points);
+        let points = (e.propagated_points)(problem, previous, now, j);
+        now.propagated_points.push(points);
         now.predicted[j].mean = (e.predicted_mean)(problem, previous, now, j);
         observer.computed(Quantity::PredictedMean, j, now);
-        if e.keeps_covariances {
+        if problem.has_covariances() {
             now.predicted[j].covariance = (e.predicted_covariance)(problem, previous, now, j);
             observer.computed(Quantity::PredictedCovariance, j, now);
         }
         Ok(())
     }
 
-    /// The measurement as a position, if the filters convert it.
-    fn convert(&mut self, observer: &mut impl Observer<T, N, M>) {
-        let (e, problem, previous, now) = self.parts();
-        if e.converts {
-            now.converted_measurement = (e.converted_measurement)(problem, previous, now);
-            observer.computed(Quantity::ConvertedMeasurement, 0, now);
-            now.converted_covariance = (e.converted_covariance)(problem, previous, now);
-            observer.computed(Quantity::ConvertedCovariance, 0, now);
+    /// The measurement z as a position, if a filter converts it.
+    fn convert(&mut self, z: &OVector<T, M>, observer: &mut impl Observer<T, N, M>) {
+        let (e, problem, _, now) = self.parts();
+        now.converted_measurement = (e.converted_measurement)(problem, z, now, 0);
+        if now.converted_measurement.is_none() {
+            return;
         }
-    }
-
-    /// One mode's update with a measurement, and its likelihood.
-    fn update(&mut self, j: usize, observer: &mut impl Observer<T, N, M>) -> Result<(), Failure> {
-        let (e, problem, previous, now) = self.parts();
-        if e.draws_points {
-            now.predicted_square_roots[j] = (e.predicted_square_root)(problem, previous, now, j)
-                .map_err(|pivot| failure(problem, now, j, "zhu2016 (27)", "predicted covariance", pivot))?;
-            for s in 0..now.predicted_points[j].len() {
-                now.predicted_points[j][s] = (e.predicted_point)(problem, previous, now, j, s);
-                now.measured_points[j][s] = (e.measured_point)(problem, previous, now, j, s);
-            }
-        }
-        now.predicted_measurements[j] = (e.predicted_measurement)(problem, previous, now, j);
-        observer.computed(Quantity::PredictedMeasurement, j, now);
-        now.innovations[j] = (e.innovation)(problem, previous, now, j);
-        observer.computed(Quantity::Innovation, j, now);
-        now.innovation_covariances[j] = (e.innovation_covariance)(problem, previous, now, j);
-        observer.computed(Quantity::InnovationCovariance, j, now);
-        if e.keeps_covariances {
-            now.cross_covariances[j] = (e.cross_covariance)(problem, previous, now, j);
-            observer.computed(Quantity::CrossCovariance, j, now);
-        }
-        now.gains[j] = (e.gain)(problem, previous, now, j)
-            .map_err(|pivot| failure(problem, now, j, "zhu2016 (51)", "innovation covariance", pivot))?;
-        observer.computed(Quantity::Gain, j, now);
-        now.updated[j].mean = (e.updated_mean)(problem, previous, now, j);
-        observer.computed(Quantity::UpdatedMean, j, now);
-        if e.keeps_covariances {
-            now.updated[j].covariance = (e.updated_covariance)(problem, previous, now, j);
-            observer.computed(Quantity::UpdatedCovariance, j, now);
-        }
-        now.log_likelihoods[j] = (e.log_likelihood)(problem, previous, now, j);
-        observer.computed(Quantity::LogLikelihood, j, now);
-        Ok(())
+        observer.computed(Quantity::ConvertedMeasurement, 0, now);
+        now.converted_covariance = (e.converted_covariance)(problem, z, now, 0);
+        observer.computed(Quantity::ConvertedCovariance, 0, now);
     }
 
     /// The mode probabilities after the measurement.
     fn weigh(&mut self, observer: &mut impl Observer<T, N, M>) -> Result<(), Failure> {
         let (e, problem, previous, now) = self.parts();
         for j in 0..problem.modes.len() {
-            now.relative_likelihoods[j] = (e.relative_likelihood)(problem, previous, now, j);
+            let likelihood = (e.relative_likelihood)(problem, previous, now, j);
+            now.relative_likelihoods.push(likelihood);
         }
-        now.evidence = (e.evidence)(problem, previous, now);
-        now.log_evidence = (e.log_evidence)(problem, previous, now);
+        now.evidence = (e.evidence)(problem, previous, now, 0);
+        now.log_evidence = (e.log_evidence)(problem, previous, now, 0);
         if !is_finite(&now.log_evidence) {
-            return Err(Failure {
-                step: now.step,
-                mode: "all".into(),
-                equation: "zhu2016 (58)",
-                cause: Cause::NoEvidence,
-            });
+            return Err(failure(
+                problem,
+                now,
+                None,
+                Quantity::ModeProbabilities.name(),
+                Cause::NoEvidence,
+            ));
         }
         for j in 0..problem.modes.len() {
             now.mode_probabilities[j] = (e.mode_probability)(problem, previous, now, j);
@@ -394,15 +373,15 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
     /// No detection: nothing is learnt, and the probabilities follow the chain.
     fn go_without_detection(&mut self, observer: &mut impl Observer<T, N, M>) {
         let (e, problem, previous, now) = self.parts();
-        now.forget_measured_values();
         for j in 0..problem.modes.len() {
             now.updated[j].mean = (e.undetected_mean)(problem, previous, now, j);
             observer.computed(Quantity::UpdatedMean, j, now);
-            if e.keeps_covariances {
+            if problem.has_covariances() {
                 now.updated[j].covariance = (e.undetected_covariance)(problem, previous, now, j);
                 observer.computed(Quantity::UpdatedCovariance, j, now);
             }
-            now.log_likelihoods[j] = (e.undetected_log_likelihood)(problem, previous, now, j);
+            let log_likelihood = (e.undetected_log_likelihood)(problem, previous, now, j);
+            now.log_likelihoods.extend(log_likelihood);
         }
         for j in 0..problem.modes.len() {
             now.mode_probabilities[j] = (e.undetected_mode_probability)(problem, previous, now, j);
@@ -413,10 +392,10 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
     /// The estimate before the measurement, for output.
     fn combine_prediction(&mut self, observer: &mut impl Observer<T, N, M>) {
         let (e, problem, previous, now) = self.parts();
-        now.combined_prediction.mean = (e.combined_prediction_mean)(problem, previous, now);
+        now.combined_prediction.mean = (e.combined_prediction_mean)(problem, previous, now, 0);
         observer.computed(Quantity::CombinedPredictionMean, 0, now);
-        if e.keeps_covariances {
-            now.combined_prediction.covariance = (e.combined_prediction_covariance)(problem, previous, now);
+        if problem.has_covariances() {
+            now.combined_prediction.covariance = (e.combined_prediction_covariance)(problem, previous, now, 0);
             observer.computed(Quantity::CombinedPredictionCovariance, 0, now);
         }
     }
@@ -424,70 +403,101 @@ impl<T: Real, const N: usize, const M: usize> Imm<T, N, M> {
     /// The estimate after the measurement, for output.
     fn combine(&mut self, observer: &mut impl Observer<T, N, M>) {
         let (e, problem, previous, now) = self.parts();
-        now.combined.mean = (e.combined_mean)(problem, previous, now);
+        now.combined.mean = (e.combined_mean)(problem, previous, now, 0);
         observer.computed(Quantity::CombinedMean, 0, now);
-        if e.keeps_covariances {
-            now.combined.covariance = (e.combined_covariance)(problem, previous, now);
+        if problem.has_covariances() {
+            now.combined.covariance = (e.combined_covariance)(problem, previous, now, 0);
             observer.computed(Quantity::CombinedCovariance, 0, now);
         }
     }
 
     /// What every equation is given.
-    fn parts(
-        &mut self,
-    ) -> (
-        &Equations<T, N, M>,
-        &Problem<T, N, M>,
-        &Step<T, N, M>,
-        &mut Step<T, N, M>,
-    ) {
+    fn parts(&mut self) -> Parts<'_, T, N, M> {
         (&self.equations, &self.problem, &self.previous, &mut self.now)
     }
 
     /// A measurement is finite, its ranges are not negative, and its bearings are angles in radians.
-    fn check_measurement(&self, z: &SVector<T, M>) -> Result<(), Failure> {
-        let fail = |equation, cause| {
-            Err(Failure {
-                step: self.now.step,
-                mode: "all".into(),
-                equation,
-                cause,
-            })
-        };
+    fn check_measurement(&self, z: &OVector<T, M>) -> Result<(), Failure> {
+        let fail = |cause| Err(failure(&self.problem, &self.now, None, "measurement", cause));
+        let (found, expected) = (z.len(), self.problem.m().value());
+        if found != expected {
+            return fail(Cause::MeasurementLength { found, expected });
+        }
         if !all_finite(z) {
-            return fail("liu2017 (1)", Cause::MeasurementNotFinite);
+            return fail(Cause::MeasurementNotFinite);
         }
         let two_turns = T::pi() * T::integer(2);
         for (component, value) in z.iter().enumerate() {
-            match self.problem.measurement.reports(component) {
-                Some(PolarComponent::Range) if *value < T::zero() => {
-                    let range = format!("{value:?}");
-                    return fail("liu2017 (31)", Cause::NegativeRange { range });
-                }
-                Some(PolarComponent::Bearing) if *value > two_turns || *value < -two_turns.clone() => {
-                    let bearing = format!("{value:?}");
-                    return fail("liu2017 (31)", Cause::BearingOutOfRange { bearing });
-                }
-                _ => {}
+            let sensor = &self.problem.sensor;
+            if sensor.reports(component) == Some(PolarComponent::Range) && *value < T::zero() {
+                let range = format!("{value:?}");
+                return fail(Cause::NegativeRange { range });
+            }
+            if sensor.is_angle(component) && (*value > two_turns || *value < -two_turns.clone()) {
+                let bearing = format!("{value:?}");
+                return fail(Cause::BearingOutOfRange { bearing });
             }
         }
         Ok(())
     }
 }
 
-/// A covariance of mode j that is not positive definite.
-fn failure<T, const N: usize, const M: usize>(
+/// The update of mode j with the measurement z, and its likelihood. The modes before it must have been updated.
+///
+/// # Errors
+///
+/// [`Failure`] when a covariance is not positive definite.
+pub(crate) fn update<T: Real, N: Dim, M: Dim>(
+    e: &Equations<T, N, M>,
     problem: &Problem<T, N, M>,
-    now: &Step<T, N, M>,
+    previous: &Step<T, N, M>,
+    now: &mut Step<T, N, M>,
+    z: &OVector<T, M>,
     j: usize,
-    equation: &'static str,
-    what: &'static str,
-    pivot: NotPositiveDefinite,
-) -> Failure {
-    Failure {
-        step: now.step,
-        mode: problem.modes[j].name.clone(),
-        equation,
-        cause: Cause::NotPositiveDefinite { what, pivot },
+    observer: &mut impl Observer<T, N, M>,
+) -> Result<(), Failure>
+where
+    Shapes: Holds<N, M>,
+{
+    let points = (e.predicted_points)(problem, previous, now, j).map_err(|pivot| {
+        not_definite(
+            problem,
+            now,
+            j,
+            Quantity::PredictedMeasurement,
+            "predicted covariance",
+            pivot,
+        )
+    })?;
+    now.predicted_points.push(points);
+    let values = (e.measured_points)(problem, previous, now, j);
+    now.measured_points.push(values);
+    let predicted = (e.predicted_measurement)(problem, previous, now, j);
+    now.predicted_measurements.push(predicted);
+    observer.computed(Quantity::PredictedMeasurement, j, now);
+    let innovation = (e.innovation)(problem, z, now, j);
+    now.innovations.push(innovation);
+    observer.computed(Quantity::Innovation, j, now);
+    let covariance = (e.innovation_covariance)(problem, previous, now, j);
+    now.innovation_covariances.push(covariance);
+    observer.computed(Quantity::InnovationCovariance, j, now);
+    if problem.has_covariances() {
+        let covariance = (e.cross_covariance)(problem, previous, now, j);
+        now.cross_covariances.push(covariance);
+        observer.computed(Quantity::CrossCovariance, j, now);
     }
+    let gain = (e.gain)(problem, previous, now, j)
+        .map_err(|pivot| not_definite(problem, now, j, Quantity::Gain, "innovation covariance", pivot))?;
+    now.gains.push(gain);
+    observer.computed(Quantity::Gain, j, now);
+    now.updated[j].mean = (e.updated_mean)(problem, previous, now, j);
+    observer.computed(Quantity::UpdatedMean, j, now);
+    if problem.has_covariances() {
+        now.updated[j].covariance = (e.updated_covariance)(problem, previous, now, j);
+        observer.computed(Quantity::UpdatedCovariance, j, now);
+    }
+    let log_likelihood = (e.log_likelihood)(problem, previous, now, j);
+    now.log_likelihoods.push(log_likelihood);
+    observer.computed(Quantity::LogLikelihood, j, now);
+    Ok(())
 }

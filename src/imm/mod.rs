@@ -16,30 +16,30 @@
 //!
 //! - [`probability`]: the equations of the mode probabilities;
 //! - [`problem`]: what a run is given, checked;
-//! - [`record`]: every value of one step, under its name;
-//! - [`quantity`]: the names of the values that are traced, and what each is computed from;
+//! - [`record`]: every value of one step, and the table of those that are traced;
 //! - [`equations`]: the table that says which equation gives each value; a variant of the filter exchanges entries of it;
 //! - [`cycle`]: the one wiring that runs a table;
-//! - [`fixed_gain`]: the table of filters whose gains are inputs;
 //! - [`unequal`]: what is mixed where one mode has an entry of the state that another lacks;
 //! - [`plain_bearing`]: bearings that are never wrapped;
 //! - [`printed`]: what the papers print wrongly.
 //!
 //! Example: a whole step with two modes, value by value, is on the [front page](crate); [`Imm`] has one with one mode.
 
+mod check;
 pub mod cycle;
 pub mod equations;
-pub mod fixed_gain;
+pub mod failure;
+pub mod invalid;
 pub mod plain_bearing;
 pub mod printed;
 pub mod probability;
 pub mod problem;
-pub mod quantity;
 pub mod record;
 pub mod unequal;
 
-pub use cycle::{Failure, Imm, Observer};
+pub use cycle::{Imm, Observer};
 pub use equations::Equations;
-pub use problem::{Initial, InvalidProblem, Problem};
-pub use quantity::{Quantity, Scope};
-pub use record::Step;
+pub use failure::{Cause, Failure};
+pub use invalid::InvalidProblem;
+pub use problem::{Initial, Interaction, Problem};
+pub use record::{Needs, Quantity, Step};

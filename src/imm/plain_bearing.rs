@@ -4,40 +4,45 @@
 //! the points' bearings, their deviations from it, and the innovation. Far from the negative x-axis nothing changes.
 
 use super::Equations;
-use super::equations::{covariance_weights, weights};
-use crate::filter::cubature;
-use crate::model::Measurement;
+use super::equations::used;
+use crate::filter::{Transform, Update, cubature};
+use crate::matrix::{Holds, Shapes};
+use crate::model::Sensor;
 use crate::number::Real;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{Dim, OMatrix};
 
-impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
+impl<T: Real, N: Dim, M: Dim> Equations<T, N, M>
+where
+    Shapes: Holds<N, M>,
+{
     /// The table with plain bearings in all three places, as in the EKF/UKF toolbox (Hartikainen, Solin and Särkkä 2011).
     ///
     /// Example: a bearing of 135° is measured where −135° is expected. The innovation is a quarter turn backwards; as a plain number it is
     /// three quarters forwards, and turns the correction round.
     ///
     /// ```
-    /// use immaculate::{gaussian::Gaussian, imm::{Equations, Imm, Initial, Problem}};
-    /// use immaculate::{model::{Measurement, PolarComponent, motion::Mode}, rule::RuleName};
+    /// use immaculate::{gaussian::Gaussian, imm::{Equations, Imm, Initial, Interaction, Problem}};
+    /// use immaculate::filter::Filter;
+    /// use immaculate::{model::{PolarComponent, Sensor, motion::{Mode, Motion}}, rule::RuleName};
     /// use nalgebra::{Matrix2, matrix, vector};
     /// use std::f64::consts::PI;
     ///
     /// let problem = Problem {
-    ///     modes: vec![Mode { name: "still".into(), transition: Matrix2::identity(), noise: Matrix2::zeros() }],
-    ///     transition: vec![vec![1.0]],
-    ///     measurement: Measurement::Polar { components: [PolarComponent::Bearing], position: [0, 1], sensor: [0.0, 0.0] },
+    ///     modes: vec![Mode { name: "still".into(), motion: Motion::Linear(Matrix2::identity()), noise: Matrix2::zeros() }],
+    ///     chain: vec![vec![1.0]],
+    ///     sensor: Sensor::Polar { components: vec![PolarComponent::Bearing], position: [0, 1], location: [0.0, 0.0] },
     ///     measurement_noise: matrix![0.01],
-    ///     rule: Some("cubature-3".parse::<RuleName>()?.rule()?),
-    ///     fixed_gains: None,
+    ///     filters: vec![Filter::points("cubature-3".parse::<RuleName>()?.rule()?)],
+    ///     interaction: Interaction::Imm,
     /// };
     /// let start = Gaussian { mean: vector![-1.0, -1.0], covariance: Matrix2::identity() * 1e-6 };
     /// let initial = Initial { modes: vec![start], mode_probabilities: vec![1.0] };
     /// let innovation = |equations| -> Result<f64, Box<dyn std::error::Error>> {
-    ///     Ok(Imm::new(problem.clone(), equations, &initial)?.step(Some(&vector![0.75 * PI]))?.innovations[0][0])
+    ///     Ok(Imm::with_equations(problem.clone(), equations, &initial)?.step(Some(&vector![0.75 * PI]))?.innovations[0][0])
     /// };
     /// // The points scatter by 1e-3 about (−1, −1), and the mean of their bearings moves by its square at most.
-    /// assert!((innovation(Equations::cubature())? - -0.5 * PI).abs() < 1e-6);
-    /// assert!((innovation(Equations::cubature().with_plain_bearings())? - 1.5 * PI).abs() < 1e-6);
+    /// assert!((innovation(Equations::standard())? - -0.5 * PI).abs() < 1e-6);
+    /// assert!((innovation(Equations::standard().with_plain_bearings())? - 1.5 * PI).abs() < 1e-6);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]
@@ -49,8 +54,9 @@ impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
     #[must_use]
     pub fn with_plain_mean(self) -> Self {
         Self {
-            predicted_measurement: |problem, _, now, j| {
-                cubature::weighted_mean(weights(problem), &now.measured_points[j])
+            predicted_measurement: |problem, previous, now, j| match &problem.filter(j).update {
+                Update::By(Transform::Points(rule)) => cubature::weighted_mean(&rule.weights, &now.measured_points[j]),
+                _ => (Self::standard().predicted_measurement)(problem, previous, now, j),
             },
             ..self
         }
@@ -60,19 +66,23 @@ impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
     #[must_use]
     pub fn with_plain_deviations(self) -> Self {
         Self {
-            innovation_covariance: |problem, _, now, j| {
-                let (values, mean) = (&now.measured_points[j], &now.predicted_measurements[j]);
-                cubature::weighted_covariance(covariance_weights(problem), values, mean, &problem.measurement_noise)
+            innovation_covariance: |problem, previous, now, j| match &problem.filter(j).update {
+                Update::By(Transform::Points(rule)) => {
+                    let (values, mean) = (&now.measured_points[j], &now.predicted_measurements[j]);
+                    cubature::weighted_covariance(&rule.covariance_weights, values, mean, &problem.measurement_noise)
+                }
+                _ => (Self::standard().innovation_covariance)(problem, previous, now, j),
             },
-            cross_covariance: |problem, _, now, j| {
-                cubature::cross_covariance(
-                    &Measurement::Linear(SMatrix::zeros()), // which has no angles
-                    covariance_weights(problem),
+            cross_covariance: |problem, previous, now, j| match &problem.filter(j).update {
+                Update::By(Transform::Points(rule)) => cubature::cross_covariance(
+                    &Sensor::Linear(OMatrix::zeros_generic(problem.m(), problem.n())), // which has no angles
+                    &rule.covariance_weights,
                     &now.predicted_points[j],
                     &now.predicted[j].mean,
                     &now.measured_points[j],
                     &now.predicted_measurements[j],
-                )
+                ),
+                _ => (Self::standard().cross_covariance)(problem, previous, now, j),
             },
             ..self
         }
@@ -82,10 +92,7 @@ impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
     #[must_use]
     pub fn with_plain_innovation(self) -> Self {
         Self {
-            innovation: |_, _, now, j| match &now.measurement {
-                Some(z) => z - &now.predicted_measurements[j],
-                None => SVector::from_fn(|_, _| T::undecided()),
-            },
+            innovation: |problem, z, now, j| used(problem, z, now, j) - &now.predicted_measurements[j],
             ..self
         }
     }

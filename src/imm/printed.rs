@@ -4,9 +4,9 @@
 //! and for the scenarios that measure its effect.
 
 use super::Equations;
-use crate::matrix::{Ldl, ldl, log_determinant, quadratic_form};
+use crate::matrix::{Holds, Ldl, Shapes, ldl, log_determinant, quadratic_form};
 use crate::number::Real;
-use nalgebra::SVector;
+use nalgebra::{Dim, OVector};
 
 /// liu2017 (21) as printed: ln L = −½ νᵀ S⁻¹ ν − (n_z/2) ln|2πS|.
 ///
@@ -28,8 +28,11 @@ use nalgebra::SVector;
 /// assert!((right - Real::ln(&4.0)).abs() < 8.0 * f64::EPSILON);
 /// assert!((printed - Real::ln(&16.0)).abs() < 8.0 * f64::EPSILON);
 /// ```
-pub fn log_density_21<T: Real, const M: usize>(residual: &SVector<T, M>, covariance: &Ldl<T, M>) -> T {
-    let dimension = T::integer(i64::try_from(M).unwrap_or(i64::MAX));
+pub fn log_density_21<T: Real, M: Dim>(residual: &OVector<T, M>, covariance: &Ldl<T, M>) -> T
+where
+    Shapes: Holds<M>,
+{
+    let dimension = T::integer(i64::try_from(residual.len()).unwrap_or(i64::MAX));
     let two_pi = T::pi() * T::integer(2);
     let log_determinant_of_two_pi_s = log_determinant(covariance) + dimension.clone() * two_pi.ln();
     -(quadratic_form(covariance, residual) + dimension * log_determinant_of_two_pi_s) / T::integer(2)
@@ -52,7 +55,10 @@ pub fn log_density_21<T: Real, const M: usize>(residual: &SVector<T, M>, covaria
 /// let lacking: f64 = log_density_57(&nu, &s) - log_density(&nu, &s);
 /// assert!((lacking - Real::ln(&(2.0 * std::f64::consts::PI)) / 2.0).abs() < 4.0 * f64::EPSILON);
 /// ```
-pub fn log_density_57<T: Real, const M: usize>(residual: &SVector<T, M>, covariance: &Ldl<T, M>) -> T {
+pub fn log_density_57<T: Real, M: Dim>(residual: &OVector<T, M>, covariance: &Ldl<T, M>) -> T
+where
+    Shapes: Holds<M>,
+{
     let two_pi = T::pi() * T::integer(2);
     let log_of_two_pi_det = log_determinant(covariance) + two_pi.ln();
     -(quadratic_form(covariance, residual) + log_of_two_pi_det) / T::integer(2)
@@ -80,10 +86,16 @@ pub fn mode_probability_22<T: Real>(log_likelihood: &T, predicted_mode_probabili
     likelihood * predicted_mode_probabilities[mode].clone() / c
 }
 
-/// The cubature filters' table with the likelihood of liu2017 (21) as printed.
-pub fn cubature_with_likelihood_21<T: Real, const N: usize, const M: usize>() -> Equations<T, N, M> {
-    Equations {
-        log_likelihood: |_, _, now, j| log_density_21(&now.innovations[j], &ldl(&now.innovation_covariances[j])),
-        ..Equations::cubature()
+impl<T: Real, N: Dim, M: Dim> Equations<T, N, M>
+where
+    Shapes: Holds<N, M>,
+{
+    /// The table with the likelihood of liu2017 (21) as printed.
+    #[must_use]
+    pub fn with_likelihood_21(self) -> Self {
+        Self {
+            log_likelihood: |_, _, now, j| log_density_21(&now.innovations[j], &ldl(&now.innovation_covariances[j])),
+            ..self
+        }
     }
 }

@@ -1,70 +1,70 @@
-//! The record of one step: every value of the cycle, under its name.
+//! The record of one step: every value of the cycle under its name, and the table of those that a trace shows.
 //!
-//! After this file the reader knows what a step computes and in which order. Each field holds one value a mode (or one in all); each
-//! is given by the entry of the same name in [`Equations`](super::Equations). The record is always filled in: that is what makes
-//! the filter inspectable, and costs next to nothing.
-//!
-//! The fields are in the order in which they are computed. [`Quantity`](super::Quantity) names those that a trace shows.
+//! [`Step`] has a place for each value, in the order in which they are computed. [`Quantity`] names the values that are traced: a row of
+//! the table below says of each its name, its shape, whether each mode has its own, when it exists, and where it stands. The record that
+//! is read and overwritten by name, traces, the judge and the file formats are made from these rows. The points of cubature filters are not
+//! among them: programs draw them in different orders.
 
 use crate::gaussian::Gaussian;
+use crate::matrix::{Holds, Shapes};
 use crate::number::Field;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::allocator::Allocator;
+use nalgebra::{Dim, OMatrix, OVector};
 
 /// All values of step k. Lists have one entry a mode; step 0 is the initial estimate.
 ///
-/// In a step without a detection [`Step::measurement`] is none, and the values that come from a measurement are undecided. So are all
-/// covariances of filters that carry none, those with fixed gains; what a filter does not draw or convert is zero.
+/// A value that a step does not have is not there: without a detection the lists of what comes from a measurement are empty.
+/// Filters whose gains are given have no covariances of the state; where a [`Gaussian`] holds one, it is undecided.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Step<T, const N: usize, const M: usize> {
+pub struct Step<T: Field, N: Dim, M: Dim>
+where
+    Shapes: Holds<N, M>,
+{
     /// k, counted from 0.
     pub step: usize,
     /// The measurement z, or none at a missed detection and at step 0.
-    pub measurement: Option<SVector<T, M>>,
+    pub measurement: Option<OVector<T, M>>,
     /// cⱼ.
     pub predicted_mode_probabilities: Vec<T>,
     /// μᵢ∣ⱼ as `[j][i]`.
     pub mixing_probabilities: Vec<Vec<T>>,
     /// The mixed estimates x̂⁰ʲ, P⁰ʲ.
     pub mixed: Vec<Gaussian<T, N>>,
-    /// Square roots of the mixed covariances; for filters with points.
-    pub mixed_square_roots: Vec<SMatrix<T, N, N>>,
-    /// Points of the mixed estimates, `[j][s]`.
-    pub mixed_points: Vec<Vec<SVector<T, N>>>,
+    /// Points of the mixed estimates, `[j][s]`; none for a filter that draws none.
+    pub mixed_points: Vec<Vec<OVector<T, N>>>,
     /// The propagated points, `[j][s]`.
-    pub propagated_points: Vec<Vec<SVector<T, N>>>,
+    pub propagated_points: Vec<Vec<OVector<T, N>>>,
     /// The predicted estimates.
     pub predicted: Vec<Gaussian<T, N>>,
-    /// Square roots of the predicted covariances; for filters with points.
-    pub predicted_square_roots: Vec<SMatrix<T, N, N>>,
-    /// Points drawn afresh from the predicted estimates, `[j][s]`.
-    pub predicted_points: Vec<Vec<SVector<T, N>>>,
-    /// The measurements of these points, `[j][s]`.
-    pub measured_points: Vec<Vec<SVector<T, M>>>,
+    /// The combined estimate before the measurement.
+    pub combined_prediction: Gaussian<T, N>,
     /// The measurement as a position; of filters that convert it.
-    pub converted_measurement: SVector<T, M>,
+    pub converted_measurement: Option<OVector<T, M>>,
     /// R^c, the covariance of the converted measurement.
-    pub converted_covariance: SMatrix<T, M, M>,
+    pub converted_covariance: Option<OMatrix<T, M, M>>,
+    /// Points drawn afresh from the predicted estimates, `[j][s]`; none for a filter that draws none.
+    pub predicted_points: Vec<Vec<OVector<T, N>>>,
+    /// The measurements of these points, `[j][s]`.
+    pub measured_points: Vec<Vec<OVector<T, M>>>,
     /// ẑʲ.
-    pub predicted_measurements: Vec<SVector<T, M>>,
+    pub predicted_measurements: Vec<OVector<T, M>>,
     /// ν = z − ẑ, angles wrapped.
-    pub innovations: Vec<SVector<T, M>>,
+    pub innovations: Vec<OVector<T, M>>,
     /// S = P_zz.
-    pub innovation_covariances: Vec<SMatrix<T, M, M>>,
+    pub innovation_covariances: Vec<OMatrix<T, M, M>>,
     /// C = P_xz.
-    pub cross_covariances: Vec<SMatrix<T, N, M>>,
+    pub cross_covariances: Vec<OMatrix<T, N, M>>,
     /// W.
-    pub gains: Vec<SMatrix<T, N, M>>,
+    pub gains: Vec<OMatrix<T, N, M>>,
     /// The updated estimates; the predicted ones at a missed detection.
     pub updated: Vec<Gaussian<T, N>>,
     /// ln Lⱼ.
     pub log_likelihoods: Vec<T>,
-    /// The combined estimate before the measurement.
-    pub combined_prediction: Gaussian<T, N>,
     /// Λⱼ, the likelihoods relative to the greatest.
     pub relative_likelihoods: Vec<T>,
-    /// C, the normaliser of the mode probabilities.
+    /// C, the normaliser of the mode probabilities; 1 where nothing was measured.
     pub evidence: T,
-    /// The log-likelihood of the measurement under all modes.
+    /// The log-likelihood of the measurement under all modes; 0 where nothing was measured.
     pub log_evidence: T,
     /// μⱼ; the predicted ones at a missed detection.
     pub mode_probabilities: Vec<T>,
@@ -72,77 +72,395 @@ pub struct Step<T, const N: usize, const M: usize> {
     pub combined: Gaussian<T, N>,
 }
 
-impl<T: Field, const N: usize, const M: usize> Step<T, N, M> {
-    /// A record for a number of modes and of points, all zeros, to be filled in.
-    pub fn zeros(modes: usize, points: usize) -> Self {
+impl<T: Field, N: Dim, M: Dim> Step<T, N, M>
+where
+    Shapes: Holds<N, M>,
+{
+    /// Step 0: the initial estimates and probabilities. Where a later step has another value of the same shape, the estimate stands for it
+    /// until it is computed.
+    pub fn initial(estimates: &[Gaussian<T, N>], mode_probabilities: &[T]) -> Self {
         Self {
             step: 0,
             measurement: None,
-            predicted_mode_probabilities: vec![T::zero(); modes],
-            mixing_probabilities: vec![vec![T::zero(); modes]; modes],
-            mixed: vec![Gaussian::zeros(); modes],
-            mixed_square_roots: vec![SMatrix::zeros(); modes],
-            mixed_points: vec![vec![SVector::zeros(); points]; modes],
-            propagated_points: vec![vec![SVector::zeros(); points]; modes],
-            predicted: vec![Gaussian::zeros(); modes],
-            predicted_square_roots: vec![SMatrix::zeros(); modes],
-            predicted_points: vec![vec![SVector::zeros(); points]; modes],
-            measured_points: vec![vec![SVector::zeros(); points]; modes],
-            converted_measurement: SVector::zeros(),
-            converted_covariance: SMatrix::zeros(),
-            predicted_measurements: vec![SVector::zeros(); modes],
-            innovations: vec![SVector::zeros(); modes],
-            innovation_covariances: vec![SMatrix::zeros(); modes],
-            cross_covariances: vec![SMatrix::zeros(); modes],
-            gains: vec![SMatrix::zeros(); modes],
-            updated: vec![Gaussian::zeros(); modes],
-            log_likelihoods: vec![T::zero(); modes],
-            combined_prediction: Gaussian::zeros(),
-            relative_likelihoods: vec![T::zero(); modes],
-            evidence: T::zero(),
+            predicted_mode_probabilities: mode_probabilities.to_vec(),
+            mixing_probabilities: vec![mode_probabilities.to_vec(); estimates.len()],
+            mixed: estimates.to_vec(),
+            mixed_points: Vec::new(),
+            propagated_points: Vec::new(),
+            predicted: estimates.to_vec(),
+            combined_prediction: estimates[0].clone(),
+            converted_measurement: None,
+            converted_covariance: None,
+            predicted_points: Vec::new(),
+            measured_points: Vec::new(),
+            predicted_measurements: Vec::new(),
+            innovations: Vec::new(),
+            innovation_covariances: Vec::new(),
+            cross_covariances: Vec::new(),
+            gains: Vec::new(),
+            updated: estimates.to_vec(),
+            log_likelihoods: Vec::new(),
+            relative_likelihoods: Vec::new(),
+            evidence: T::one(),
             log_evidence: T::zero(),
-            mode_probabilities: vec![T::zero(); modes],
-            combined: Gaussian::zeros(),
+            mode_probabilities: mode_probabilities.to_vec(),
+            combined: estimates[0].clone(),
         }
     }
 
-    /// Makes every covariance of the state undecided, for filters that carry none: a zero would be taken for certainty.
-    pub(super) fn forget_covariances(&mut self) {
-        let modes = self
-            .mixed
-            .iter_mut()
-            .chain(&mut self.predicted)
-            .chain(&mut self.updated);
-        for estimate in modes.chain([&mut self.combined_prediction, &mut self.combined]) {
-            estimate.covariance.fill(T::undecided());
+    /// Takes out every value that comes from a measurement or is drawn anew: what stands there from an earlier step is not this step's.
+    pub(super) fn clear(&mut self) {
+        self.mixed_points.clear();
+        self.propagated_points.clear();
+        self.converted_measurement = None;
+        self.converted_covariance = None;
+        self.predicted_points.clear();
+        self.measured_points.clear();
+        self.predicted_measurements.clear();
+        self.innovations.clear();
+        self.innovation_covariances.clear();
+        self.cross_covariances.clear();
+        self.gains.clear();
+        self.log_likelihoods.clear();
+        self.relative_likelihoods.clear();
+        self.evidence = T::one();
+        self.log_evidence = T::zero();
+    }
+}
+
+/// The number of rows or columns of a value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// One.
+    One,
+    /// n, the components of the state.
+    State,
+    /// m, the components of the measurement.
+    Measurement,
+    /// r, the modes.
+    Modes,
+}
+
+impl Side {
+    /// The number, for n, m and r.
+    pub fn count(self, n: usize, m: usize, r: usize) -> usize {
+        match self {
+            Self::One => 1,
+            Self::State => n,
+            Self::Measurement => m,
+            Self::Modes => r,
         }
-        for covariance in &mut self.cross_covariances {
-            covariance.fill(T::undecided());
+    }
+}
+
+/// What must be there for a value to exist.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Needs {
+    /// A filter with covariances of the state.
+    Covariances,
+    /// A detection in this step.
+    Detection,
+    /// A filter that converts measurements.
+    Conversion,
+}
+
+/// A row of the table: what is known of a traced value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Row {
+    /// The name in traces, with a dot where the value is nested.
+    pub name: &'static str,
+    /// The printed equations that give it.
+    pub equation: &'static str,
+    /// Its rows.
+    pub rows: Side,
+    /// Its columns.
+    pub columns: Side,
+    /// Whether each mode has its own; otherwise it belongs to all together.
+    pub is_of_mode: bool,
+    /// What must be there for it to exist.
+    pub needs: &'static [Needs],
+}
+
+/// Numbers that stand in one piece, by columns: a scalar, a list, a matrix, or nothing.
+trait Entries<T> {
+    fn entries(&self) -> &[T];
+    fn entries_mut(&mut self) -> &mut [T];
+}
+
+impl<T: Field> Entries<T> for T {
+    fn entries(&self) -> &[T] {
+        std::slice::from_ref(self)
+    }
+    fn entries_mut(&mut self) -> &mut [T] {
+        std::slice::from_mut(self)
+    }
+}
+
+impl<T> Entries<T> for Vec<T> {
+    fn entries(&self) -> &[T] {
+        self
+    }
+    fn entries_mut(&mut self) -> &mut [T] {
+        self
+    }
+}
+
+impl<T: Field, R: Dim, C: Dim> Entries<T> for OMatrix<T, R, C>
+where
+    Shapes: Allocator<R, C>,
+{
+    fn entries(&self) -> &[T] {
+        self.as_slice()
+    }
+    fn entries_mut(&mut self) -> &mut [T] {
+        self.as_mut_slice()
+    }
+}
+
+/// The table. A row: the value, its name, its equations, its rows and columns, of each mode or of all, what it needs, and its place in
+/// [`Step`]; `[j]` stands for the entry of mode j, `?` for a value that may not be there.
+macro_rules! values {
+    ($($value:ident $name:literal $equation:literal ($rows:ident, $columns:ident) $per:ident [$($needs:ident),*]
+        $field:ident $([$mode:ident])? $(? $some:ident)? $(. $part:ident)?;)*) => {
+        /// A traced value of a step.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum Quantity {
+            $(#[doc = concat!("`", $name, "`.")] $value,)*
+        }
+
+        impl Quantity {
+            /// All, in the order in which they are computed.
+            pub const ALL: [Self; [$(stringify!($value)),*].len()] = [$(Self::$value),*];
+
+            /// The rows of the table, in the same order.
+            pub const ROWS: [Row; Self::ALL.len()] = [$(Row {
+                name: $name,
+                equation: $equation,
+                rows: Side::$rows,
+                columns: Side::$columns,
+                is_of_mode: values!(@is_of_mode $per),
+                needs: &[$(Needs::$needs),*],
+            }),*];
+        }
+
+        impl<T: Field, N: Dim, M: Dim> Step<T, N, M>
+        where
+            Shapes: Holds<N, M>,
+        {
+            /// The numbers of a quantity, by columns; of mode j if the quantity has a mode.
+            fn entries(&self, quantity: Quantity, j: usize) -> Option<&[T]> {
+                match quantity {
+                    $(Quantity::$value => Some(values!(@place self, j, get, as_ref, $field $([$mode])? $(? $some)? $(. $part)?).entries()),)*
+                }
+            }
+
+            /// As [`Step::entries`], to be overwritten.
+            fn entries_mut(&mut self, quantity: Quantity, j: usize) -> Option<&mut [T]> {
+                match quantity {
+                    $(Quantity::$value => Some(values!(@place self, j, get_mut, as_mut, $field $([$mode])? $(? $some)? $(. $part)?).entries_mut()),)*
+                }
+            }
+        }
+    };
+    (@is_of_mode each) => { true };
+    (@is_of_mode all) => { false };
+    (@place $step:ident, $j:ident, $get:ident, $as:ident, $field:ident) => { $step.$field };
+    (@place $step:ident, $j:ident, $get:ident, $as:ident, $field:ident . $part:ident) => { $step.$field.$part };
+    (@place $step:ident, $j:ident, $get:ident, $as:ident, $field:ident ? $some:ident) => { $step.$field.$as()? };
+    (@place $step:ident, $j:ident, $get:ident, $as:ident, $field:ident [$mode:ident]) => { $step.$field.$get($j)? };
+    (@place $step:ident, $j:ident, $get:ident, $as:ident, $field:ident [$mode:ident] . $part:ident) => { $step.$field.$get($j)?.$part };
+}
+
+#[rustfmt::skip]
+values! {
+    PredictedModeProbabilities   "predicted_mode_probabilities"   "zhu2016 (54), liu2017 (13)" (Modes, One) all [] predicted_mode_probabilities;
+    MixingProbabilities          "mixing_probabilities"           "zhu2016 (54), liu2017 (13)" (Modes, One) each [] mixing_probabilities[j];
+    MixedMean                    "mixed.mean"                     "zhu2016 (55), liu2017 (12)" (State, One) each [] mixed[j].mean;
+    MixedCovariance              "mixed.covariance"               "zhu2016 (56), liu2017 (12)" (State, State) each [Covariances] mixed[j].covariance;
+    PredictedMean                "predicted.mean"                 "zhu2016 (21), liu2017 (17)" (State, One) each [] predicted[j].mean;
+    PredictedCovariance          "predicted.covariance"           "zhu2016 (24), liu2017 (17)" (State, State) each [Covariances] predicted[j].covariance;
+    CombinedPredictionMean       "combined_prediction.mean"       "zhu2016 (59), liu2017 (23)" (State, One) all [] combined_prediction.mean;
+    CombinedPredictionCovariance "combined_prediction.covariance" "zhu2016 (60), liu2017 (24)" (State, State) all [Covariances] combined_prediction.covariance;
+    ConvertedMeasurement         "converted_measurement"          "sustika2015 (20)-(21)"      (Measurement, One) all [Conversion, Detection] converted_measurement? z;
+    ConvertedCovariance          "converted_covariance"           "sustika2015 (22)-(26)"      (Measurement, Measurement) all [Conversion, Detection] converted_covariance? r;
+    PredictedMeasurement         "predicted_measurement"          "zhu2016 (42), liu2017 (19)" (Measurement, One) each [Detection] predicted_measurements[j];
+    Innovation                   "innovation"                     "zhu2016 (52), liu2017 (20)" (Measurement, One) each [Detection] innovations[j];
+    InnovationCovariance         "innovation_covariance"          "zhu2016 (45), liu2017 (19)" (Measurement, Measurement) each [Detection] innovation_covariances[j];
+    CrossCovariance              "cross_covariance"               "zhu2016 (48), liu2017 (19)" (State, Measurement) each [Covariances, Detection] cross_covariances[j];
+    Gain                         "gain"                           "zhu2016 (51), liu2017 (20)" (State, Measurement) each [Detection] gains[j];
+    UpdatedMean                  "updated.mean"                   "zhu2016 (52), liu2017 (20)" (State, One) each [] updated[j].mean;
+    UpdatedCovariance            "updated.covariance"             "zhu2016 (53), liu2017 (20)" (State, State) each [Covariances] updated[j].covariance;
+    LogLikelihood                "log_likelihood"                 "zhu2016 (57), liu2017 (21)" (One, One) each [Detection] log_likelihoods[j];
+    ModeProbabilities            "mode_probabilities"             "zhu2016 (58), liu2017 (22)" (Modes, One) all [] mode_probabilities;
+    CombinedMean                 "combined.mean"                  "zhu2016 (59), liu2017 (23)" (State, One) all [] combined.mean;
+    CombinedCovariance           "combined.covariance"            "zhu2016 (60), liu2017 (24)" (State, State) all [Covariances] combined.covariance;
+}
+
+/// What a quantity is computed from: another of the same step, or of the step before. Of the same step and mode if both have a mode,
+/// else of all modes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Input {
+    /// A quantity of the same step.
+    Now(Quantity),
+    /// A quantity of the step before.
+    Before(Quantity),
+}
+
+use Input::{Before, Now};
+use Quantity::{
+    CombinedCovariance, CombinedMean, CombinedPredictionCovariance, CombinedPredictionMean, ConvertedCovariance,
+    ConvertedMeasurement, CrossCovariance, Gain, Innovation, InnovationCovariance, LogLikelihood, MixedCovariance,
+    MixedMean, MixingProbabilities, ModeProbabilities, PredictedCovariance, PredictedMean, PredictedMeasurement,
+    PredictedModeProbabilities, UpdatedCovariance, UpdatedMean,
+};
+
+impl Quantity {
+    /// Its row of the table.
+    ///
+    /// Example: from the name in a trace to the printed number.
+    ///
+    /// ```
+    /// use immaculate::imm::Quantity;
+    ///
+    /// assert_eq!(Quantity::MixedCovariance.row().name, "mixed.covariance");
+    /// assert_eq!(Quantity::MixedCovariance.equation(), "zhu2016 (56), liu2017 (12)");
+    /// ```
+    pub fn row(self) -> &'static Row {
+        &Self::ROWS[self as usize]
+    }
+
+    /// The name in traces, with a dot where the value is nested.
+    pub fn name(self) -> &'static str {
+        self.row().name
+    }
+
+    /// The printed equations that give it.
+    pub fn equation(self) -> &'static str {
+        self.row().equation
+    }
+
+    /// Whether each mode has its own; otherwise it belongs to all together.
+    pub fn is_of_mode(self) -> bool {
+        self.row().is_of_mode
+    }
+
+    /// Whether it exists only where something is there.
+    pub fn needs(self, what: Needs) -> bool {
+        self.row().needs.contains(&what)
+    }
+
+    /// Whether it exists, where `has` says what is there.
+    pub fn exists(self, has: impl Fn(Needs) -> bool) -> bool {
+        self.row().needs.iter().all(|&needed| has(needed))
+    }
+
+    /// Rows and columns, for n components of the state, m of the measurement and r modes. Vectors have one column, scalars one row too.
+    pub fn shape(self, n: usize, m: usize, r: usize) -> (usize, usize) {
+        let Row { rows, columns, .. } = self.row();
+        (rows.count(n, m, r), columns.count(n, m, r))
+    }
+
+    /// 0 for a scalar, 1 for a vector, 2 for a matrix.
+    pub fn rank(self) -> usize {
+        let Row { rows, columns, .. } = self.row();
+        usize::from(*rows != Side::One) + usize::from(*columns != Side::One)
+    }
+
+    /// Whether it is a covariance, and so symmetric.
+    pub fn is_covariance(self) -> bool {
+        let Row { rows, columns, .. } = self.row();
+        self.rank() == 2 && rows == columns
+    }
+
+    /// What it is computed from, besides the problem and the measurement, where `has` says what is there.
+    pub fn inputs(self, has: impl Fn(Needs) -> bool) -> impl Iterator<Item = Input> {
+        let inputs = match self {
+            InnovationCovariance | Gain if !has(Needs::Covariances) => &[],
+            _ => self.all_inputs(has(Needs::Detection)),
+        };
+        inputs.iter().copied().filter(move |input| {
+            let (Now(quantity) | Before(quantity)) = *input;
+            // What is read of the step before is there with and without a detection.
+            quantity.exists(|needed| needed == Needs::Detection || has(needed))
+        })
+    }
+
+    /// What it is computed from by filters of any kind.
+    fn all_inputs(self, has_detection: bool) -> &'static [Input] {
+        match self {
+            PredictedModeProbabilities => &[Before(ModeProbabilities)],
+            MixingProbabilities => &[Before(ModeProbabilities), Now(PredictedModeProbabilities)],
+            MixedMean => &[Now(MixingProbabilities), Before(UpdatedMean)],
+            MixedCovariance => &[
+                Now(MixingProbabilities),
+                Now(MixedMean),
+                Before(UpdatedMean),
+                Before(UpdatedCovariance),
+            ],
+            PredictedMean => &[Now(MixedMean), Now(MixedCovariance)],
+            PredictedCovariance => &[Now(MixedMean), Now(MixedCovariance), Now(PredictedMean)],
+            CombinedPredictionMean => &[Now(PredictedModeProbabilities), Now(PredictedMean)],
+            CombinedPredictionCovariance => &[
+                Now(PredictedModeProbabilities),
+                Now(PredictedMean),
+                Now(PredictedCovariance),
+                Now(CombinedPredictionMean),
+            ],
+            PredictedMeasurement => &[Now(PredictedMean), Now(PredictedCovariance)],
+            // What was measured alone. (By the convention `at-prediction` R^c is of the combined prediction instead.)
+            ConvertedMeasurement | ConvertedCovariance => &[],
+            Innovation => &[Now(PredictedMeasurement), Now(ConvertedMeasurement)],
+            InnovationCovariance => &[
+                Now(PredictedMean),
+                Now(PredictedCovariance),
+                Now(PredictedMeasurement),
+                Now(ConvertedCovariance),
+            ],
+            CrossCovariance => &[Now(PredictedMean), Now(PredictedCovariance), Now(PredictedMeasurement)],
+            Gain => &[Now(InnovationCovariance), Now(CrossCovariance)],
+            UpdatedMean if has_detection => &[Now(PredictedMean), Now(Gain), Now(Innovation)],
+            UpdatedMean => &[Now(PredictedMean)],
+            UpdatedCovariance if has_detection => &[Now(PredictedCovariance), Now(Gain), Now(InnovationCovariance)],
+            UpdatedCovariance => &[Now(PredictedCovariance)],
+            LogLikelihood => &[Now(Innovation), Now(InnovationCovariance)],
+            ModeProbabilities if has_detection => &[Now(PredictedModeProbabilities), Now(LogLikelihood)],
+            ModeProbabilities => &[Now(PredictedModeProbabilities)],
+            CombinedMean => &[Now(ModeProbabilities), Now(UpdatedMean)],
+            CombinedCovariance => &[
+                Now(ModeProbabilities),
+                Now(UpdatedMean),
+                Now(UpdatedCovariance),
+                Now(CombinedMean),
+            ],
+        }
+    }
+}
+
+impl<T: Field, N: Dim, M: Dim> Step<T, N, M>
+where
+    Shapes: Holds<N, M>,
+{
+    /// The numbers of a quantity, by rows; of mode j if the quantity has a mode. None where the step has no such value.
+    pub fn values(&self, quantity: Quantity, j: usize) -> Option<Vec<T>> {
+        let by_columns = self.entries(quantity, j)?;
+        let (rows, columns) = self.shape_of(quantity);
+        let by_rows = (0..by_columns.len()).map(|place| by_columns[place % columns * rows + place / columns].clone());
+        Some(by_rows.collect())
+    }
+
+    /// Puts other numbers, by rows, in the place of a quantity, if the step has such a value. They must be as many as [`Step::values`]
+    /// gives.
+    pub fn replace(&mut self, quantity: Quantity, j: usize, values: &[T]) {
+        let (rows, columns) = self.shape_of(quantity);
+        if let Some(by_columns) = self.entries_mut(quantity, j) {
+            for (place, value) in values.iter().enumerate() {
+                by_columns[place % columns * rows + place / columns] = value.clone();
+            }
         }
     }
 
-    /// Makes every value that comes from a measurement undecided, for a step without one: what stands there from an earlier step
-    /// must not be taken for this step's.
-    pub(super) fn forget_measured_values(&mut self) {
-        for j in 0..self.innovations.len() {
-            self.predicted_measurements[j].fill(T::undecided());
-            self.innovations[j].fill(T::undecided());
-            self.innovation_covariances[j].fill(T::undecided());
-            self.cross_covariances[j].fill(T::undecided());
-            self.gains[j].fill(T::undecided());
-            self.log_likelihoods[j] = T::undecided();
-            self.relative_likelihoods[j] = T::undecided();
-            self.predicted_square_roots[j].fill(T::undecided());
-            for point in &mut self.predicted_points[j] {
-                point.fill(T::undecided());
-            }
-            for value in &mut self.measured_points[j] {
-                value.fill(T::undecided());
-            }
-        }
-        self.converted_measurement.fill(T::undecided());
-        self.converted_covariance.fill(T::undecided());
-        self.evidence = T::undecided();
-        self.log_evidence = T::undecided();
+    fn shape_of(&self, quantity: Quantity) -> (usize, usize) {
+        let m = self.measurement.as_ref().map_or(0, OVector::len);
+        quantity.shape(self.combined.mean.len(), m, self.updated.len())
     }
 }

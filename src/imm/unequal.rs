@@ -15,9 +15,10 @@
 
 use super::{Equations, Problem, Step};
 use crate::gaussian::{Gaussian, mixture_covariance, mixture_mean};
+use crate::matrix::{Holds, Shapes, rows};
 use crate::model::motion::Mode;
 use crate::number::{Field, Real};
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{Dim, OMatrix, OVector};
 
 /// The covariance of a mixture, index by index: a component adds to the rows and columns that its mode has.
 ///
@@ -38,10 +39,10 @@ use nalgebra::{SMatrix, SVector};
 /// zero.
 ///
 /// ```
-/// use immaculate::{gaussian::{Gaussian, mixture_covariance}, imm::unequal::index_wise_covariance, model::motion::Mode};
+/// use immaculate::{gaussian::{Gaussian, mixture_covariance}, imm::unequal::index_wise_covariance, model::motion::{Mode, Motion}};
 /// use nalgebra::{matrix, vector};
 ///
-/// let mode = |f| Mode { name: "acceleration".into(), transition: matrix![f], noise: matrix![0.0] };
+/// let mode = |f| Mode { name: "acceleration".into(), motion: Motion::Linear(matrix![f]), noise: matrix![0.0] };
 /// let modes = [mode(0.0), mode(1.0)];
 /// let none = Gaussian { mean: vector![0.0], covariance: matrix![0.0] };
 /// let some = Gaussian { mean: vector![4.0], covariance: matrix![1.0] };
@@ -51,13 +52,16 @@ use nalgebra::{SMatrix, SVector};
 /// ```
 ///
 /// Evidence: `index_wise_mixing_leaves_out_the_spread_of_a_missing_entry` (exact).
-pub fn index_wise_covariance<T: Field, const N: usize>(
+pub fn index_wise_covariance<T: Field, N: Dim>(
     weights: &[T],
     components: &[Gaussian<T, N>],
-    mean: &SVector<T, N>,
+    mean: &OVector<T, N>,
     modes: &[Mode<T, N>],
-) -> SMatrix<T, N, N> {
-    let mut covariance = SMatrix::zeros();
+) -> OMatrix<T, N, N>
+where
+    Shapes: Holds<N>,
+{
+    let mut covariance = OMatrix::zeros_generic(rows(mean), rows(mean));
     for ((weight, component), mode) in weights.iter().zip(components).zip(modes) {
         let deviation = &component.mean - mean;
         let second_moment = &component.covariance + &deviation * deviation.transpose();
@@ -67,9 +71,12 @@ pub fn index_wise_covariance<T: Field, const N: usize>(
 }
 
 /// A matrix with zeros in the rows and columns of the entries that a mode lacks.
-fn without_missing_entries<T: Field, const N: usize>(matrix: SMatrix<T, N, N>, mode: &Mode<T, N>) -> SMatrix<T, N, N> {
+fn without_missing_entries<T: Field, N: Dim>(matrix: OMatrix<T, N, N>, mode: &Mode<T, N>) -> OMatrix<T, N, N>
+where
+    Shapes: Holds<N>,
+{
     let mut kept = matrix;
-    for entry in (0..N).filter(|&entry| mode.lacks(entry)) {
+    for entry in (0..kept.nrows()).filter(|&entry| mode.lacks(entry)) {
         kept.row_mut(entry).fill(T::zero());
         kept.column_mut(entry).fill(T::zero());
     }
@@ -97,10 +104,10 @@ fn without_missing_entries<T: Field, const N: usize>(matrix: SMatrix<T, N, N>, m
 /// Example: position and acceleration; the first mode has no acceleration and takes it from the second.
 ///
 /// ```
-/// use immaculate::{gaussian::Gaussian, imm::unequal::augmented, model::motion::Mode};
+/// use immaculate::{gaussian::Gaussian, imm::unequal::augmented, model::motion::{Mode, Motion}};
 /// use nalgebra::{matrix, vector};
 ///
-/// let mode = Mode { name: "still".into(), transition: matrix![1.0, 0.0; 0.0, 0.0], noise: matrix![1.0, 0.0; 0.0, 0.0] };
+/// let mode = Mode { name: "still".into(), motion: Motion::Linear(matrix![1.0, 0.0; 0.0, 0.0]), noise: matrix![1.0, 0.0; 0.0, 0.0] };
 /// let own = Gaussian { mean: vector![1.0, 0.0], covariance: matrix![2.0, 0.0; 0.0, 0.0] };
 /// let of = Gaussian { mean: vector![3.0, 4.0], covariance: matrix![5.0, 6.0; 6.0, 9.0] };
 /// let both = augmented(&own, &of, &mode);
@@ -108,16 +115,15 @@ fn without_missing_entries<T: Field, const N: usize>(matrix: SMatrix<T, N, N>, m
 /// ```
 ///
 /// Evidence: `unbiased_mixing_keeps_the_entry_that_one_mode_alone_has` (exact).
-pub fn augmented<T: Field, const N: usize>(
-    own: &Gaussian<T, N>,
-    of: &Gaussian<T, N>,
-    mode: &Mode<T, N>,
-) -> Gaussian<T, N> {
+pub fn augmented<T: Field, N: Dim>(own: &Gaussian<T, N>, of: &Gaussian<T, N>, mode: &Mode<T, N>) -> Gaussian<T, N>
+where
+    Shapes: Holds<N>,
+{
     let mut estimate = Gaussian {
         mean: own.mean.clone(),
         covariance: without_missing_entries(own.covariance.clone(), mode),
     };
-    let missing: Vec<usize> = (0..N).filter(|&entry| mode.lacks(entry)).collect();
+    let missing: Vec<usize> = (0..own.mean.len()).filter(|&entry| mode.lacks(entry)).collect();
     for &row in &missing {
         estimate.mean[row] = of.mean[row].clone();
         for &column in &missing {
@@ -128,18 +134,24 @@ pub fn augmented<T: Field, const N: usize>(
 }
 
 /// The estimates of all modes as they are mixed for mode j: each with what it lacks taken from j.
-fn augmented_for<T: Real, const N: usize, const M: usize>(
+fn augmented_for<T: Real, N: Dim, M: Dim>(
     problem: &Problem<T, N, M>,
     previous: &Step<T, N, M>,
     j: usize,
-) -> Vec<Gaussian<T, N>> {
+) -> Vec<Gaussian<T, N>>
+where
+    Shapes: Holds<N, M>,
+{
     let estimates = previous.updated.iter().zip(&problem.modes);
     estimates
         .map(|(estimate, mode)| augmented(estimate, &previous.updated[j], mode))
         .collect()
 }
 
-impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
+impl<T: Real, N: Dim, M: Dim> Equations<T, N, M>
+where
+    Shapes: Holds<N, M>,
+{
     /// The table with mixed and combined covariances index by index, [`index_wise_covariance`].
     #[must_use]
     pub fn with_index_wise_mixing(self) -> Self {
@@ -148,11 +160,11 @@ impl<T: Real, const N: usize, const M: usize> Equations<T, N, M> {
                 let (weights, mean) = (&now.mixing_probabilities[j], &now.mixed[j].mean);
                 index_wise_covariance(weights, &previous.updated, mean, &problem.modes)
             },
-            combined_prediction_covariance: |problem, _, now| {
+            combined_prediction_covariance: |problem, _, now, _| {
                 let (weights, mean) = (&now.predicted_mode_probabilities, &now.combined_prediction.mean);
                 index_wise_covariance(weights, &now.predicted, mean, &problem.modes)
             },
-            combined_covariance: |problem, _, now| {
+            combined_covariance: |problem, _, now, _| {
                 let (weights, mean) = (&now.mode_probabilities, &now.combined.mean);
                 index_wise_covariance(weights, &now.updated, mean, &problem.modes)
             },

@@ -11,9 +11,9 @@
 //!
 //! Units: metres, seconds. With the coordinates scaled by D = diag(1, t, t²) every matrix here has t = 1.
 
-use super::motion::Mode;
+use super::motion::{Mode, Motion};
 use crate::number::Field;
-use nalgebra::{Matrix3, RowVector3, Vector3};
+use nalgebra::{Matrix3, RowVector3, U3, Vector3};
 
 /// Transition matrix of constant velocity, embedded in three dimensions — derbez2000 (5).
 ///
@@ -204,16 +204,16 @@ pub fn response_noise<T: Field>(response: &Vector3<T>, variance: &T) -> Matrix3<
 /// assert_eq!([&*velocity.name, &*acceleration.name], ["constant velocity", "constant acceleration"]);
 /// assert_eq!([velocity.noise[(2, 2)], acceleration.noise[(2, 2)]], [0.0, 3.0]);
 /// ```
-pub fn modes<T: Field>(interval: &T, [of_velocity, of_acceleration]: &[T; 2]) -> [Mode<T, 3>; 2] {
+pub fn modes<T: Field>(interval: &T, [of_velocity, of_acceleration]: &[T; 2]) -> [Mode<T, U3>; 2] {
     [
         Mode {
             name: "constant velocity".to_owned(),
-            transition: embedded_constant_velocity(interval),
+            motion: Motion::Linear(embedded_constant_velocity(interval)),
             noise: response_noise(&embedded_velocity_response(interval), of_velocity),
         },
         Mode {
             name: "constant acceleration".to_owned(),
-            transition: constant_acceleration(interval),
+            motion: Motion::Linear(constant_acceleration(interval)),
             noise: response_noise(&acceleration_response(interval), of_acceleration),
         },
     ]

@@ -2,14 +2,14 @@
 //!
 //! After this folder the reader knows the transition matrices and noise covariances of the papers' models and where they come from
 //! ([`motion`], [`acceleration`] for one coordinate with its acceleration, and [`wiener`] for two), the two measurements
-//! ([`measurement`]), how range and bearing become a position ([`conversion`]), what that does to their noise ([`conversion_moments`])
+//! ([`sensor`]), how range and bearing become a position ([`conversion`]), what that does to their noise ([`conversion_moments`])
 //! and how far it can be trusted ([`conversion_validity`]), and what happens to angles at ±π ([`angle`]).
 //!
 //! ```text
 //! state ─ F, Q of a mode ─▶ state a step later ─ h, R of the sensor ─▶ measurement ( ─ conversion ─▶ position and its covariance )
 //! ```
 //!
-//! Reading order: [`motion`], [`measurement`] and [`angle`] are all that zhu2016 and liu2017 need; [`acceleration`] is derbez2000's target;
+//! Reading order: [`motion`], [`sensor`] and [`angle`] are all that zhu2016 and liu2017 need; [`acceleration`] is derbez2000's target;
 //! [`wiener`] and the three files of the conversion are sustika2015's.
 //!
 //! Models that no paper prints are data: [`space`] says what a vector is, [`formula`] reads functions from text, [`function`] is f or h of
@@ -22,10 +22,10 @@
 //!
 //! ```
 //! use immaculate::model::motion::{constant_velocity, turn_matrix};
-//! use immaculate::model::{Measurement, PolarComponent};
+//! use immaculate::model::{Sensor, PolarComponent};
 //! use nalgebra::vector;
 //!
-//! let range = Measurement::Polar { components: [PolarComponent::Range], position: [0, 2], sensor: [0.0, 0.0] };
+//! let range = Sensor::Polar { components: vec![PolarComponent::Range], position: [0, 2], location: [0.0, 0.0] };
 //! let state = vector![0.0, 3.0, 4.0, 0.0]; // [x, ẋ, y, ẏ]: 4 m to the north, eastward at 3 m/s
 //! // Straight it is at (3, 4), √(3² + 4²) away.
 //! assert_eq!(range.of(&(constant_velocity(&1.0) * state)), vector![5.0]);
@@ -36,18 +36,20 @@
 
 pub mod acceleration;
 pub mod angle;
+#[cfg(feature = "oracle")]
 pub mod binding;
 pub mod conversion;
 pub mod conversion_moments;
 pub mod conversion_validity;
 pub mod formula;
 pub mod function;
-pub mod measurement;
 pub mod motion;
 pub mod nearest;
+#[cfg(feature = "oracle")]
 pub mod registry;
+pub mod sensor;
 pub mod space;
 pub mod wiener;
 
 pub use conversion::Conversion;
-pub use measurement::{Measurement, PolarComponent};
+pub use sensor::{PolarComponent, Sensor};

@@ -13,41 +13,51 @@
 //! [`coordinated_turn`] and [`turn_noise`] the same along a circle, and [`acceleration_noise`] is the noise of zhu2016, whose acceleration
 //! is constant over a step and not white.
 
+use super::function::Function;
+use crate::matrix::{Holds, Shapes, rows};
 use crate::number::{Field, Real};
-use nalgebra::{Matrix4, Matrix4x2, SMatrix};
+use nalgebra::{Dim, Matrix4, Matrix4x2, OMatrix, OVector, U1};
+use std::borrow::Cow;
+use std::sync::Arc;
 
 /// A mode of the target: how its state moves and how uncertain that is — sustika2015 (1), liu2017 (1).
 ///
 /// ```text
-/// xₖ = F xₖ₋₁ + wₖ₋₁,   wₖ₋₁ ~ N(0, Q)
+/// xₖ = f(xₖ₋₁) + wₖ₋₁,   wₖ₋₁ ~ N(0, Q)
 /// ```
 ///
-/// Why: the papers allow a nonlinear f here and use linear ones only, zhu2016 (61) and liu2017 (25), (28). So does this crate;
-/// the cubature filters push their points through F one by one all the same.
+/// Why: the papers allow a nonlinear f here and use linear ones only, zhu2016 (61) and liu2017 (25), (28); [`Motion`] is either.
+/// The cubature filters push their points through F one by one all the same.
 ///
-/// Example: a mode is two matrices and a name. Its state moves with F, and the uncertainty Q comes on top.
+/// Example: a mode is a motion, a noise and a name. Its state moves with F, and the uncertainty Q comes on top.
 ///
 /// ```
-/// use immaculate::model::motion::{Mode, constant_velocity, integrated_noise};
+/// use immaculate::model::motion::{Mode, Motion, constant_velocity, integrated_noise};
 /// use nalgebra::vector;
 ///
-/// let straight = Mode { name: "straight".into(), transition: constant_velocity(&2.0), noise: integrated_noise(&3.0, &2.0) };
+/// let straight = Mode { name: "straight".into(), motion: Motion::Linear(constant_velocity(&2.0)), noise: integrated_noise(&3.0, &2.0) };
 /// // 10 + 2 · 3 and 20 + 2 · (−1); after that x has the variance 3 · 2³/3, if it was known before
-/// assert_eq!(straight.transition * vector![10.0, 3.0, 20.0, -1.0], vector![16.0, 3.0, 18.0, -1.0]);
+/// assert_eq!(straight.motion.of(&vector![10.0, 3.0, 20.0, -1.0]), vector![16.0, 3.0, 18.0, -1.0]);
 /// assert_eq!(straight.noise[(0, 0)], 8.0);
 /// ```
 #[derive(Debug, Clone, PartialEq)]
-pub struct Mode<T, const N: usize> {
+pub struct Mode<T: Field, N: Dim>
+where
+    Shapes: Holds<N>,
+{
     /// The mode's name.
     pub name: String,
-    /// F, N × N.
-    pub transition: SMatrix<T, N, N>,
+    /// f.
+    pub motion: Motion<T, N>,
     /// Q, N × N, symmetric positive semidefinite, in products of the units of the state.
-    pub noise: SMatrix<T, N, N>,
+    pub noise: OMatrix<T, N, N>,
 }
 
-impl<T: Field, const N: usize> Mode<T, N> {
-    /// Whether the motion has no such entry of the state — sustika2015 (padding).
+impl<T: Field, N: Dim> Mode<T, N>
+where
+    Shapes: Holds<N>,
+{
+    /// Whether the motion has no such entry of the state — sustika2015 (padding). That is told from a matrix only.
     ///
     /// It sets it to zero, without noise, and knows it exactly ever after. That is how models of unequal dimensions share one state,
     /// constant velocity and constant acceleration for instance.
@@ -57,12 +67,12 @@ impl<T: Field, const N: usize> Mode<T, N> {
     /// Example: constant velocity among states with an acceleration.
     ///
     /// ```
-    /// use immaculate::model::{acceleration, motion::Mode};
+    /// use immaculate::model::{acceleration, motion::{Mode, Motion}};
     ///
     /// let response = acceleration::embedded_velocity_response(&1.0);
     /// let mode = Mode {
     ///     name: "constant velocity".into(),
-    ///     transition: acceleration::embedded_constant_velocity(&1.0),
+    ///     motion: Motion::Linear(acceleration::embedded_constant_velocity(&1.0)),
     ///     noise: acceleration::response_noise(&response, &1.0),
     /// };
     /// assert_eq!([0, 1, 2].map(|entry| mode.lacks(entry)), [false, false, true]);
@@ -71,8 +81,116 @@ impl<T: Field, const N: usize> Mode<T, N> {
     /// Evidence: `constant_velocity_among_six_components_has_the_unscented_moments_of_four_when_kappa_is_three_minus_n`,
     /// `an_entry_without_variance_has_a_row_of_zeros_in_the_square_root` (exact).
     pub fn lacks(&self, entry: usize) -> bool {
-        let is_zero = |matrix: &SMatrix<T, N, N>| matrix.row(entry).iter().all(T::is_zero);
-        is_zero(&self.transition) && is_zero(&self.noise)
+        let is_zero = |matrix: &OMatrix<T, N, N>| matrix.row(entry).iter().all(T::is_zero);
+        matches!(&self.motion, Motion::Linear(f) if is_zero(f)) && is_zero(&self.noise)
+    }
+}
+
+/// How a state moves in a step: f of x(k) = f(x(k−1)) + w.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Motion<T: Field, N: Dim>
+where
+    Shapes: Holds<N>,
+{
+    /// f(x) = F x, with F of N × N. All motions of the papers are of this kind.
+    Linear(OMatrix<T, N, N>),
+    /// f(x) = F x + b: a known input, such as gravity or a commanded acceleration, moves the state as well.
+    Affine {
+        /// F, N × N.
+        matrix: OMatrix<T, N, N>,
+        /// b.
+        offset: OVector<T, N>,
+    },
+    /// Any function of the state; filters that draw points have no other need.
+    Function {
+        /// f.
+        function: Arc<Function>,
+        /// The values of what the function is given besides the state, [`Function::given`].
+        given: Vec<T>,
+    },
+}
+
+impl<T: Field, N: Dim> Motion<T, N>
+where
+    Shapes: Holds<N>,
+{
+    /// The number of components of the state, as the type of that side.
+    pub fn dimension(&self) -> N {
+        match self {
+            Self::Linear(matrix) | Self::Affine { matrix, .. } => rows(matrix),
+            Self::Function { function, .. } => N::from_usize(function.dimension()),
+        }
+    }
+
+    /// Whether the motion is a matrix, perhaps with an offset; a filter that does not draw points needs that.
+    pub fn is_linear(&self) -> bool {
+        !matches!(self, Self::Function { .. })
+    }
+
+    /// F; of a function, which has none, every entry is undecided.
+    ///
+    /// Source: the matrix of the motion itself.
+    pub fn matrix(&self) -> Cow<'_, OMatrix<T, N, N>> {
+        match self {
+            Self::Linear(matrix) | Self::Affine { matrix, .. } => Cow::Borrowed(matrix),
+            Self::Function { .. } => {
+                let n = self.dimension();
+                Cow::Owned(OMatrix::from_fn_generic(n, n, |_, _| T::undecided()))
+            }
+        }
+    }
+
+    /// F, to be changed; `None` of a function.
+    pub fn matrix_mut(&mut self) -> Option<&mut OMatrix<T, N, N>> {
+        match self {
+            Self::Linear(matrix) | Self::Affine { matrix, .. } => Some(matrix),
+            Self::Function { .. } => None,
+        }
+    }
+
+    /// b; `None` if there is none.
+    pub fn offset(&self) -> Option<&OVector<T, N>> {
+        match self {
+            Self::Affine { offset, .. } => Some(offset),
+            _ => None,
+        }
+    }
+}
+
+impl<T: Real, N: Dim> Motion<T, N>
+where
+    Shapes: Holds<N>,
+{
+    /// The state a step later, without noise: F x, F x + b, or f(x).
+    ///
+    /// Source: zhu2016 (14), where f is a matrix.
+    ///
+    /// Example: the same motion as a matrix and as formulas.
+    ///
+    /// ```
+    /// use immaculate::model::function::Function;
+    /// use immaculate::model::motion::Motion;
+    /// use nalgebra::{matrix, vector};
+    ///
+    /// let as_matrix = Motion::Linear(matrix![1.0, 2.0; 0.0, 1.0]);
+    /// let function = Function::of_formulas(&["x", "vx"], &["T"], &[], &[], &[("x", "x + T*vx"), ("vx", "vx")])?;
+    /// let as_formulas = Motion::Function { function: function.into(), given: vec![2.0] };
+    /// for motion in [as_matrix, as_formulas] {
+    ///     assert_eq!(motion.of(&vector![10.0, 3.0]), vector![16.0, 3.0]); // 10 + 2 · 3
+    /// }
+    /// # Ok::<(), immaculate::model::function::InvalidFunction>(())
+    /// ```
+    ///
+    /// Evidence: `formulas_of_a_turn_are_its_matrix` (models_in_filters).
+    pub fn of(&self, state: &OVector<T, N>) -> OVector<T, N> {
+        match self {
+            Self::Linear(matrix) => matrix * state,
+            Self::Affine { matrix, offset } => matrix * state + offset,
+            Self::Function { function, given } => {
+                let values = function.at(state.as_slice(), given);
+                OVector::from_iterator_generic(self.dimension(), U1, values)
+            }
+        }
     }
 }
 

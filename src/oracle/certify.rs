@@ -9,10 +9,9 @@ use super::noise;
 use super::problem::ProblemFile;
 use super::scale::scales;
 use super::setup::Setup;
-use super::shape::{self, Work};
-use super::trace::{Dimensions, Table, Trace, numbers_as_json};
+use super::trace::{Table, Trace, numbers_as_json};
 use crate::imm::Quantity;
-use crate::number::{Enclosure, RandomRounding};
+use crate::number::Enclosure;
 use serde_json::{Value, json};
 
 /// The bits of the first attempt. The longest runs of the published cases need some hundreds.
@@ -86,9 +85,7 @@ pub fn certify(problem: &ProblemFile) -> Result<Certified, NotCertified> {
 /// As [`certify`].
 pub fn certify_from(problem: &ProblemFile, first_bits: u32) -> Result<Certified, NotCertified> {
     problem.check()?;
-    let Dimensions { n, m, .. } = problem.dimensions();
-    let attempt = |bits| shape::dispatch(n, m, Attempt { problem, bits })?;
-    with_more_and_more_bits(first_bits, attempt).map(|(certified, _)| certified)
+    with_more_and_more_bits(first_bits, |bits| certify_with(problem, bits)).map(|(certified, _)| certified)
 }
 
 /// Tries with so many bits, then with twice as many until an attempt is decided; what it gives, and the bits.
@@ -107,11 +104,11 @@ fn with_more_and_more_bits<V>(
 }
 
 /// The values of a problem as enclosures, in the precision of the scope.
-fn enclosed<const N: usize, const M: usize>(
+fn enclosed(
     problem: &ProblemFile,
     undecided: impl Fn(String) -> NotCertified,
 ) -> Result<Table<Vec<Enclosure>>, NotCertified> {
-    let setup: Setup<Enclosure, N, M> = problem.setup(Enclosure::exact)?;
+    let setup: Setup<Enclosure> = problem.setup(Enclosure::exact)?;
     let computed = setup.run();
     match computed.failures.first() {
         Some(failure) => Err(undecided(failure.to_string())),
@@ -120,35 +117,23 @@ fn enclosed<const N: usize, const M: usize>(
 }
 
 /// One attempt with a number of bits.
-struct Attempt<'a> {
-    problem: &'a ProblemFile,
-    bits: u32,
-}
-
-impl Work for Attempt<'_> {
-    type Output = Result<Certified, NotCertified>;
-
-    fn run<const N: usize, const M: usize>(self) -> Self::Output {
-        let Self { problem, bits } = self;
-        let undecided = |reason: String| NotCertified::Undecided { reason, bits };
-        let (trace, digits) = Enclosure::with_precision(bits, || {
-            nearest(problem, &enclosed::<N, M>(problem, undecided)?).map_err(undecided)
-        })?;
-        let scale = scales(problem, &trace);
-        let unit_roundoff = f64::EPSILON / 2.0;
-        let perturbed = |_| {
-            let setup: Setup<RandomRounding, N, M> = problem.setup_perturbed()?;
-            Ok(setup.run())
-        };
-        let noise = noise::spread(&trace, unit_roundoff, noise::RUNS, perturbed)?;
-        Ok(Certified {
-            trace,
-            scale,
-            noise,
-            bits,
-            digits,
-        })
-    }
+fn certify_with(problem: &ProblemFile, bits: u32) -> Result<Certified, NotCertified> {
+    let undecided = |reason: String| NotCertified::Undecided { reason, bits };
+    let (trace, digits) = Enclosure::with_precision(bits, || {
+        nearest(problem, &enclosed(problem, undecided)?).map_err(undecided)
+    })?;
+    let scale = scales(problem, &trace);
+    let unit_roundoff = f64::EPSILON / 2.0;
+    let noise = noise::spread(&trace, unit_roundoff, noise::RUNS, |_| {
+        Ok(problem.setup_perturbed()?.run())
+    })?;
+    Ok(Certified {
+        trace,
+        scale,
+        noise,
+        bits,
+        digits,
+    })
 }
 
 /// The doubles nearest to enclosures, and the digits of the widest one; what is not measured is left out.
@@ -266,49 +251,36 @@ fn rounded(value: f64, digits: usize) -> f64 {
 /// As [`certify`].
 pub fn certified_decimals(problem: &ProblemFile, digits: u32) -> Result<(Table<Vec<String>>, u32), NotCertified> {
     problem.check()?;
-    let Dimensions { n, m, .. } = problem.dimensions();
     // 3.33 bits a digit, and some for what is lost on the way.
     let first_bits = FIRST_BITS.max((digits.saturating_mul(4)).next_power_of_two());
-    let attempt = |bits| shape::dispatch(n, m, Decimals { problem, bits, digits })?;
-    with_more_and_more_bits(first_bits, attempt)
+    with_more_and_more_bits(first_bits, |bits| decimals_with(problem, bits, digits))
 }
 
-/// One attempt at decimals.
-struct Decimals<'a> {
-    problem: &'a ProblemFile,
-    bits: u32,
-    digits: u32,
-}
-
-impl Work for Decimals<'_> {
-    type Output = Result<Table<Vec<String>>, NotCertified>;
-
-    fn run<const N: usize, const M: usize>(self) -> Self::Output {
-        let Self { problem, bits, digits } = self;
-        let undecided = |reason: String| NotCertified::Undecided { reason, bits };
-        Enclosure::with_precision(bits, || {
-            let values = enclosed::<N, M>(problem, undecided)?;
-            let about = about(problem, &values);
-            let mut decimals = Table::empty(values.dimensions);
-            for (step, quantity, mode) in values.all_places() {
-                let Some(numbers) = values.get(step, quantity, mode) else {
-                    continue;
-                };
-                let scale = about.get(step, quantity, mode);
-                let texts = numbers.iter().enumerate().map(|(index, number)| {
-                    if is_as_good_as_zero(number, scale.map_or(1.0, |scale| scale[index])) {
-                        Some("0".to_owned())
-                    } else {
-                        number.to_decimal(digits)
-                    }
-                });
-                let texts: Option<Vec<String>> = texts.collect();
-                let place = || undecided_place(step, quantity, mode);
-                decimals.set(step, quantity, mode, texts.ok_or_else(|| undecided(place()))?);
-            }
-            Ok(decimals)
-        })
-    }
+/// One attempt at decimals with a number of bits.
+fn decimals_with(problem: &ProblemFile, bits: u32, digits: u32) -> Result<Table<Vec<String>>, NotCertified> {
+    let undecided = |reason: String| NotCertified::Undecided { reason, bits };
+    Enclosure::with_precision(bits, || {
+        let values = enclosed(problem, undecided)?;
+        let about = about(problem, &values);
+        let mut decimals = Table::empty(values.dimensions);
+        for (step, quantity, mode) in values.all_places() {
+            let Some(numbers) = values.get(step, quantity, mode) else {
+                continue;
+            };
+            let scale = about.get(step, quantity, mode);
+            let texts = numbers.iter().enumerate().map(|(index, number)| {
+                if is_as_good_as_zero(number, scale.map_or(1.0, |scale| scale[index])) {
+                    Some("0".to_owned())
+                } else {
+                    number.to_decimal(digits)
+                }
+            });
+            let texts: Option<Vec<String>> = texts.collect();
+            let place = || undecided_place(step, quantity, mode);
+            decimals.set(step, quantity, mode, texts.ok_or_else(|| undecided(place()))?);
+        }
+        Ok(decimals)
+    })
 }
 
 fn undecided_place(step: usize, quantity: Quantity, mode: usize) -> String {

@@ -309,7 +309,11 @@ pub fn check(subject: &mut dyn Subject, selection: &Selection, progress: &dyn Fn
         .map(|(index, case, (shown, reference))| evidence_of(&cases[*index], case, shown, reference, &ready))
         .collect();
     let diagnosis = diagnose(&evidence, &conventions)?;
-    let exists = |quantity: &Quantity| asked.iter().any(|case| case.problem.filter.scope().has(*quantity));
+    let exists = |quantity: &Quantity| {
+        asked
+            .iter()
+            .any(|case| quantity.exists(|needed| case.problem.filter.has(needed)))
+    };
     let hidden = Quantity::ALL.into_iter().filter(exists).filter(|quantity| {
         !answered.iter().any(|(_, _, (shown, _))| {
             shown.all_places().any(|(step, shown_quantity, mode)| {

@@ -13,13 +13,12 @@ use super::noise;
 use super::problem::ProblemFile;
 use super::run::Triangle;
 use super::scale::scales;
-use super::setup::Setup;
-use super::shape::{self, Work};
 use super::subject::Precision;
-use super::trace::{Dimensions, Trace};
+use super::trace::Trace;
 use super::variant;
+use crate::imm::Needs;
 use crate::imm::Quantity;
-use crate::imm::quantity::Input;
+use crate::imm::record::Input;
 use crate::number::RandomRounding;
 use std::collections::BTreeSet;
 
@@ -122,62 +121,38 @@ pub fn expect(
     precision: Precision,
     runs: u64,
 ) -> Result<Expected, Invalid> {
-    let Dimensions { n, m, .. } = problem.dimensions();
-    let work = Expect {
-        problem,
-        variants,
-        shown,
-        precision,
-        runs,
+    let mut setup = problem.setup_in_doubles()?;
+    for id in variants {
+        variant::apply(id, &mut setup);
+    }
+    let centre = match shown {
+        Some(shown) => setup.run_along(shown, RandomRounding::exact, Triangle::Lower),
+        None => setup.run(),
     };
-    shape::dispatch(n, m, work)?
-}
-
-/// The work of [`expect`] for one shape.
-struct Expect<'a> {
-    problem: &'a ProblemFile,
-    variants: &'a [&'a str],
-    shown: Option<&'a Trace>,
-    precision: Precision,
-    runs: u64,
-}
-
-impl Work for Expect<'_> {
-    type Output = Result<Expected, Invalid>;
-
-    fn run<const N: usize, const M: usize>(self) -> Self::Output {
-        let mut setup: Setup<f64, N, M> = self.problem.setup_in_doubles()?;
-        for id in self.variants {
+    let values = centre.in_doubles();
+    let noise = noise::spread(&values, precision.unit_roundoff(), runs, |number| {
+        // The inputs are perturbed, too, so each run has a problem of its own.
+        let mut setup = problem.setup_perturbed()?;
+        for id in variants {
             variant::apply(id, &mut setup);
         }
-        let centre = match self.shown {
-            Some(shown) => setup.run_along(shown, |value| value, Triangle::Lower),
-            None => setup.run(),
-        };
-        let noise = noise::spread(&centre.values, self.precision.unit_roundoff(), self.runs, |number| {
-            // The inputs are perturbed, too, so each run has a problem of its own.
-            let mut setup: Setup<RandomRounding, N, M> = self.problem.setup_perturbed()?;
-            for id in self.variants {
-                variant::apply(id, &mut setup);
+        Ok(match shown {
+            Some(shown) => {
+                let triangle = if number % 2 == 0 {
+                    Triangle::Lower
+                } else {
+                    Triangle::Upper
+                };
+                setup.run_along(shown, RandomRounding::input, triangle)
             }
-            Ok(match self.shown {
-                Some(shown) => {
-                    let triangle = if number % 2 == 0 {
-                        Triangle::Lower
-                    } else {
-                        Triangle::Upper
-                    };
-                    setup.run_along(shown, RandomRounding::input, triangle)
-                }
-                None => setup.run(),
-            })
-        })?;
-        Ok(Expected {
-            values: centre.values,
-            noise,
-            failures: centre.failures.iter().map(ToString::to_string).collect(),
+            None => setup.run(),
         })
-    }
+    })?;
+    Ok(Expected {
+        values,
+        noise,
+        failures: centre.failures.iter().map(ToString::to_string).collect(),
+    })
 }
 
 impl Reference {
@@ -421,10 +396,14 @@ fn inputs(problem: &ProblemFile, shown: &Trace, place: Place) -> (BTreeSet<Place
             .get(step - 1)
             .is_some_and(|entry| entry.z.is_some())
     };
+    let needed_is_there = |step: usize, needed: Needs| match needed {
+        Needs::Detection => has_detection(step),
+        _ => problem.filter.has(needed),
+    };
     let (mut hidden, mut last_shown) = (BTreeSet::new(), BTreeSet::new());
     let mut open = vec![place];
     while let Some((step, quantity, mode)) = open.pop() {
-        for input in quantity.inputs(has_detection(step), problem.filter.scope()) {
+        for input in quantity.inputs(|needed| needed_is_there(step, needed)) {
             let (step, input, is_before) = match input {
                 Input::Now(input) => (step, input, false),
                 Input::Before(input) if step > 1 => (step - 1, input, true),

@@ -12,7 +12,7 @@
 //! # How a case is made
 //!
 //! A [`problem`] is a file of short decimals, checked before it is run; [`flags`] has the words by which the published ones are marked.
-//! [`setup`] puts its numbers into any number system, [`shape`] its dimensions into types, and [`run`] runs it there: by itself, or along
+//! [`setup`] puts its numbers into any number system, and [`run`] runs it there: by itself, or along
 //! another program's values. [`trace`] is what comes out, under the names of the file format; [`csv`] says the same in a long table,
 //! [`schema`] describes the files, and [`invalid`] has the sentence for each file that is refused.
 //!
@@ -70,7 +70,6 @@ pub mod run;
 pub mod scale;
 pub mod schema;
 pub mod setup;
-pub mod shape;
 pub mod subject;
 pub mod trace;
 mod unreadable;

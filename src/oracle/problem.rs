@@ -6,7 +6,7 @@
 use super::invalid::{Class, Invalid};
 use super::trace::Dimensions;
 use super::unreadable;
-use crate::imm::{Quantity, Scope};
+use crate::imm::{Needs, Quantity};
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
@@ -174,11 +174,12 @@ impl FilterFile {
         }
     }
 
-    /// What it computes, of what not every kind does.
-    pub fn scope(&self) -> Scope {
-        Scope {
-            covariances: !matches!(self, Self::FixedGain { .. }),
-            conversions: matches!(self, Self::Converted { .. }),
+    /// Whether what a value needs is there in filters of this kind, apart from a detection.
+    pub fn has(&self, needed: Needs) -> bool {
+        match needed {
+            Needs::Covariances => !matches!(self, Self::FixedGain { .. }),
+            Needs::Conversion => matches!(self, Self::Converted { .. }),
+            Needs::Detection => true,
         }
     }
 }

@@ -7,10 +7,10 @@
 use super::invalid::Invalid;
 use super::problem::ProblemFile;
 use super::setup::Setup;
-use super::shape::{self, Work};
 use super::trace::{Dimensions, Table, Trace};
-use crate::imm::{Failure, Observer, Quantity, Step};
-use crate::number::Real;
+use crate::imm::{Failure, Needs, Observer, Quantity, Step};
+use crate::number::{RandomRounding, Real};
+use nalgebra::Dyn;
 
 /// What a run computed.
 #[derive(Debug, Clone)]
@@ -22,7 +22,7 @@ pub struct Computed<T> {
 }
 
 /// Keeps the computed values, and puts shown ones in their places.
-struct Exchange<'a, T> {
+struct Exchange<'a, T: Real> {
     computed: &'a mut Table<Vec<T>>,
     shown: Option<&'a Trace>,
     number: fn(f64) -> T,
@@ -39,31 +39,23 @@ pub enum Triangle {
     Upper,
 }
 
-impl<T: Real, const N: usize, const M: usize> Observer<T, N, M> for Exchange<'_, T> {
-    fn computed(&mut self, quantity: Quantity, j: usize, now: &mut Step<T, N, M>) {
+impl<T: Real> Observer<T, Dyn, Dyn> for Exchange<'_, T> {
+    fn computed(&mut self, quantity: Quantity, j: usize, now: &mut Step<T, Dyn, Dyn>) {
         let shown = self.shown.and_then(|shown| shown.finite(now.step, quantity, j));
-        self.computed.set(now.step, quantity, j, now.values(quantity, j));
+        let Some(values) = now.values(quantity, j) else { return };
+        self.computed.set(now.step, quantity, j, values);
         if let Some(shown) = shown {
-            now.replace(
-                quantity,
-                j,
-                &own_values::<T, N>(quantity, shown, self.number, self.triangle),
-            );
+            now.replace(quantity, j, &own_values(quantity, shown, self.number, self.triangle));
         }
     }
 }
 
 /// Shown values in the number system; covariances by rows, or by columns where their upper triangle is to be read.
-fn own_values<T: Real, const N: usize>(
-    quantity: Quantity,
-    shown: &[f64],
-    number: fn(f64) -> T,
-    triangle: Triangle,
-) -> Vec<T> {
-    let size = match quantity {
-        Quantity::InnovationCovariance | Quantity::ConvertedCovariance => shown.len().isqrt(),
-        _ if quantity.is_covariance() => N,
-        _ => 0,
+fn own_values<T: Real>(quantity: Quantity, shown: &[f64], number: fn(f64) -> T, triangle: Triangle) -> Vec<T> {
+    let size = if quantity.is_covariance() {
+        shown.len().isqrt()
+    } else {
+        0
     };
     let is_turned = triangle == Triangle::Upper && size > 0;
     let place = |index: usize| {
@@ -76,12 +68,12 @@ fn own_values<T: Real, const N: usize>(
     (0..shown.len()).map(|index| number(shown[place(index)])).collect()
 }
 
-impl<T: Real, const N: usize, const M: usize> Setup<T, N, M> {
+impl<T: Real> Setup<T> {
     /// The dimensions of the problem.
     pub fn dimensions(&self) -> Dimensions {
         Dimensions {
-            n: N,
-            m: M,
+            n: self.problem.n().0,
+            m: self.problem.m().0,
             r: self.problem.modes.len(),
             steps: self.measurements.len(),
         }
@@ -116,7 +108,7 @@ impl<T: Real, const N: usize, const M: usize> Setup<T, N, M> {
             let Some(shown) = shown else { break };
             let now = filter.current_mut();
             now.step = index + 1;
-            if !resume(now, shown, number, self.equations.keeps_covariances) {
+            if !resume(now, shown, number, self.problem.has_covariances()) {
                 break;
             }
         }
@@ -125,17 +117,12 @@ impl<T: Real, const N: usize, const M: usize> Setup<T, N, M> {
 }
 
 /// Takes over the estimates and probabilities that a program shows for a step; whether it shows them all.
-fn resume<T: Real, const N: usize, const M: usize>(
-    now: &mut Step<T, N, M>,
-    shown: &Trace,
-    number: fn(f64) -> T,
-    keeps_covariances: bool,
-) -> bool {
+fn resume<T: Real>(now: &mut Step<T, Dyn, Dyn>, shown: &Trace, number: fn(f64) -> T, keeps_covariances: bool) -> bool {
     let r = now.updated.len();
     let needed = (0..r)
         .flat_map(|j| [(Quantity::UpdatedMean, j), (Quantity::UpdatedCovariance, j)])
         .chain([(Quantity::ModeProbabilities, 0)])
-        .filter(|(quantity, _)| keeps_covariances || !quantity.needs_covariances());
+        .filter(|(quantity, _)| keeps_covariances || !quantity.needs(Needs::Covariances));
     for (quantity, j) in needed {
         let Some(values) = shown.finite(now.step, quantity, j) else {
             return false;
@@ -165,19 +152,17 @@ fn resume<T: Real, const N: usize, const M: usize>(
 ///
 /// [`Invalid`] for a problem that cannot be set up.
 pub fn run_in_doubles(problem: &ProblemFile) -> Result<(Trace, Option<String>), Invalid> {
-    let Dimensions { n, m, .. } = problem.dimensions();
-    shape::dispatch(n, m, InDoubles(problem))?
+    let computed = problem.setup_in_doubles()?.run();
+    Ok((
+        computed.in_doubles(),
+        computed.failures.first().map(ToString::to_string),
+    ))
 }
 
-/// The work of [`run_in_doubles`] for one shape.
-struct InDoubles<'a>(&'a ProblemFile);
-
-impl Work for InDoubles<'_> {
-    type Output = Result<(Trace, Option<String>), Invalid>;
-
-    fn run<const N: usize, const M: usize>(self) -> Self::Output {
-        let setup: Setup<f64, N, M> = self.0.setup_in_doubles()?;
-        let Computed { values, failures } = setup.run();
-        Ok((values, failures.first().map(ToString::to_string)))
+impl Computed<RandomRounding> {
+    /// The values as doubles.
+    pub fn in_doubles(&self) -> Trace {
+        self.values
+            .map(|_, values| values.iter().copied().map(RandomRounding::value).collect())
     }
 }

@@ -4,34 +4,35 @@
 
 use super::invalid::{Class, Invalid};
 use super::problem::{FilterFile, MeasurementFile, ProblemFile, Rows, UNMIXED};
+use crate::filter::Filter;
 use crate::filter::fixed_gain::FixedGain;
 use crate::gaussian::Gaussian;
-use crate::imm::{Equations, Imm, Initial, Problem};
+use crate::imm::{Equations, Imm, Initial, Interaction, Problem};
 use crate::model::conversion::UnknownConversion;
-use crate::model::motion::Mode;
-use crate::model::{Measurement, PolarComponent};
+use crate::model::motion::{Mode, Motion};
+use crate::model::{PolarComponent, Sensor};
 use crate::number::{RandomRounding, Real};
 use crate::rule::{Rule, RuleName, unscented};
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{DMatrix, DVector, Dyn};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
 /// All that a run needs.
 #[derive(Debug, Clone)]
-pub struct Setup<T, const N: usize, const M: usize> {
+pub struct Setup<T: Real> {
     /// The problem.
-    pub problem: Problem<T, N, M>,
+    pub problem: Problem<T, Dyn, Dyn>,
     /// The equations.
-    pub equations: Equations<T, N, M>,
+    pub equations: Equations<T, Dyn, Dyn>,
     /// The estimate at step 0.
-    pub initial: Initial<T, N>,
+    pub initial: Initial<T, Dyn>,
     /// The measurements of steps 1, 2, …; none at a missed detection.
-    pub measurements: Vec<Option<SVector<T, M>>>,
+    pub measurements: Vec<Option<DVector<T>>>,
 }
 
-impl<T: Real, const N: usize, const M: usize> Setup<T, N, M> {
+impl<T: Real> Setup<T> {
     /// The filter at step 0. The problem is not checked: a variant's may be wrong on purpose.
-    pub fn filter(&self) -> Imm<T, N, M> {
+    pub fn filter(&self) -> Imm<T, Dyn, Dyn> {
         Imm::unchecked(self.problem.clone(), self.equations.clone(), &self.initial)
     }
 }
@@ -44,20 +45,20 @@ impl ProblemFile {
     /// # Errors
     ///
     /// [`Invalid`] for a measurement, rule or dimension that does not exist.
-    pub fn setup<T: Real, const N: usize, const M: usize>(
-        &self,
-        number: fn(f64) -> T,
-    ) -> Result<Setup<T, N, M>, Invalid> {
+    pub fn setup<T: Real>(&self, number: fn(f64) -> T) -> Result<Setup<T>, Invalid> {
         self.setup_with_rule(number, self.rule(number)?)
     }
 
-    /// The problem in doubles.
+    /// The problem in doubles: in random rounding, which outside of its scope perturbs nothing.
+    ///
+    /// nalgebra multiplies plain doubles of run-time shapes by code that is chosen by the processor, with other bits; these it multiplies
+    /// as it does matrices with shapes in their types, so that a run has the same bits on every machine.
     ///
     /// # Errors
     ///
     /// As [`ProblemFile::setup`].
-    pub fn setup_in_doubles<const N: usize, const M: usize>(&self) -> Result<Setup<f64, N, M>, Invalid> {
-        self.setup_with_rule(|value| value, self.rule_in_doubles()?)
+    pub fn setup_in_doubles(&self) -> Result<Setup<RandomRounding>, Invalid> {
+        self.setup_with_rule(RandomRounding::exact, self.rule_in_doubles()?)
     }
 
     /// The problem in random rounding, every number perturbed.
@@ -65,70 +66,66 @@ impl ProblemFile {
     /// # Errors
     ///
     /// As [`ProblemFile::setup`].
-    pub fn setup_perturbed<const N: usize, const M: usize>(&self) -> Result<Setup<RandomRounding, N, M>, Invalid> {
-        let list = |values: &[f64]| values.iter().copied().map(RandomRounding::input).collect();
-        let rule = self.rule_in_doubles::<N>()?.map(|rule| Rule {
+    pub fn setup_perturbed(&self) -> Result<Setup<RandomRounding>, Invalid> {
+        let perturbed = |value: &RandomRounding| RandomRounding::input(value.value());
+        let rule = self.rule_in_doubles()?.map(|rule| Rule {
             points: rule
                 .points
                 .iter()
-                .map(|point| point.map(RandomRounding::input))
+                .map(|point| point.map(|value| perturbed(&value)))
                 .collect(),
-            weights: list(&rule.weights),
-            covariance_weights: list(&rule.covariance_weights),
+            weights: rule.weights.iter().map(perturbed).collect(),
+            covariance_weights: rule.covariance_weights.iter().map(perturbed).collect(),
         });
         self.setup_with_rule(RandomRounding::input, rule)
     }
 
     /// The rule in doubles. It is computed once and kept: a search asks for it thousands of times.
-    fn rule_in_doubles<const N: usize>(&self) -> Result<Option<Rule<f64, N>>, Invalid> {
+    fn rule_in_doubles(&self) -> Result<Option<Rule<RandomRounding, Dyn>>, Invalid> {
         if !matches!(self.filter, FilterFile::Cubature { .. } | FilterFile::Unscented { .. }) {
             return Ok(None);
         }
-        let name = format!("{:?} {N}", self.filter);
+        let name = format!("{:?} {}", self.filter, self.state.len());
         let mut rules = RULES.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(columns) = rules.get(&name) {
-            return Ok(columns.as_ref().map(of_columns));
+        if let Some(rule) = rules.get(&name) {
+            return Ok(rule.clone());
         }
-        let rule = self.rule(|value| value)?;
+        let rule = self.rule(RandomRounding::exact)?;
         if rules.len() >= RULES_KEPT {
             rules.clear();
         }
-        rules.insert(name, rule.as_ref().map(as_columns));
+        rules.insert(name, rule.clone());
         Ok(rule)
     }
 
-    fn setup_with_rule<T: Real, const N: usize, const M: usize>(
-        &self,
-        number: fn(f64) -> T,
-        rule: Option<Rule<T, N>>,
-    ) -> Result<Setup<T, N, M>, Invalid> {
+    fn setup_with_rule<T: Real>(&self, number: fn(f64) -> T, rule: Option<Rule<T, Dyn>>) -> Result<Setup<T>, Invalid> {
         let list = |values: &[f64]| -> Vec<T> { values.iter().map(|&value| number(value)).collect() };
         let modes = self.modes.iter().map(|mode| Mode {
             name: mode.name.clone(),
-            transition: matrix(&mode.transition, number),
+            motion: Motion::Linear(matrix(&mode.transition, number)),
             noise: matrix(&mode.noise, number),
         });
         let estimates = self.initial.modes.iter().map(|estimate| Gaussian {
             mean: vector(&estimate.mean, number),
-            covariance: estimate
-                .covariance
-                .as_ref()
-                .map_or_else(SMatrix::zeros, |rows| matrix(rows, number)),
+            covariance: estimate.covariance.as_ref().map_or_else(
+                || DMatrix::zeros(estimate.mean.len(), estimate.mean.len()),
+                |rows| matrix(rows, number),
+            ),
         });
         let problem = Problem {
             modes: modes.collect(),
-            transition: self.transition.iter().map(|row| list(row)).collect(),
-            measurement: self.measurement(number)?,
+            filters: self.filters(number, rule)?,
+            interaction: match &self.filter {
+                FilterFile::FixedGain { mixing, .. } if mixing == UNMIXED => Interaction::Unmixed,
+                _ => Interaction::Imm,
+            },
+            chain: self.transition.iter().map(|row| list(row)).collect(),
+            sensor: self.sensor(number)?,
             measurement_noise: matrix(&self.noise, number),
-            rule,
-            fixed_gains: self.fixed_gains(number),
         };
         Ok(Setup {
-            equations: match &self.filter {
-                FilterFile::FixedGain { mixing, .. } if mixing == UNMIXED => Equations::fixed_gain_unmixed(),
-                _ => Equations::standard(&problem),
-            },
             problem,
+            equations: Equations::standard(),
             initial: Initial {
                 modes: estimates.collect(),
                 mode_probabilities: list(&self.initial.mode_probabilities),
@@ -141,18 +138,15 @@ impl ProblemFile {
         })
     }
 
-    fn measurement<T: Real, const N: usize, const M: usize>(
-        &self,
-        number: fn(f64) -> T,
-    ) -> Result<Measurement<T, N, M>, Invalid> {
+    fn sensor<T: Real>(&self, number: fn(f64) -> T) -> Result<Sensor<T, Dyn, Dyn>, Invalid> {
         match &self.measurement {
-            MeasurementFile::Linear { matrix: rows } => Ok(Measurement::Linear(matrix(rows, number))),
+            MeasurementFile::Linear { matrix: rows } => Ok(Sensor::Linear(matrix(rows, number))),
             MeasurementFile::RangeBearing {
                 components,
                 position,
                 sensor,
             } => {
-                let mut named = [PolarComponent::Range; M];
+                let mut named = vec![PolarComponent::Range; components.len()];
                 for (place, (component, name)) in named.iter_mut().zip(components).enumerate() {
                     *component = match name.as_str() {
                         "range" => PolarComponent::Range,
@@ -164,52 +158,51 @@ impl ProblemFile {
                         }
                     };
                 }
-                let (components, position, sensor) = (named, *position, sensor.map(number));
-                let FilterFile::Converted { conversion } = &self.filter else {
-                    return Ok(Measurement::Polar {
-                        components,
-                        position,
-                        sensor,
-                    });
-                };
-                let unknown = |error: UnknownConversion| {
-                    Invalid::new(Class::Unknown, "problem.filter.conversion", error.to_string())
-                };
-                let conversion = conversion.parse().map_err(unknown)?;
-                Ok(Measurement::Converted {
-                    components,
-                    position,
-                    sensor,
-                    conversion,
+                Ok(Sensor::Polar {
+                    components: named,
+                    position: *position,
+                    location: sensor.map(number),
                 })
             }
         }
     }
 
-    fn fixed_gains<T: Real, const N: usize, const M: usize>(
+    /// The filters of the modes, with the rule of those that draw points.
+    fn filters<T: Real>(
         &self,
         number: fn(f64) -> T,
-    ) -> Option<Vec<FixedGain<T, N, M>>> {
-        let FilterFile::FixedGain { modes, .. } = &self.filter else {
-            return None;
-        };
-        let given = modes.iter().map(|mode| FixedGain {
-            gain: matrix(&mode.gain, number),
-            innovation_covariance: matrix(&mode.innovation_covariance, number),
-        });
-        Some(given.collect())
+        rule: Option<Rule<T, Dyn>>,
+    ) -> Result<Vec<Filter<T, Dyn, Dyn>>, Invalid> {
+        Ok(match (&self.filter, rule) {
+            (_, Some(rule)) => vec![Filter::points(rule)],
+            (FilterFile::Converted { conversion }, _) => {
+                let unknown = |error: UnknownConversion| {
+                    Invalid::new(Class::Unknown, "problem.filter.conversion", error.to_string())
+                };
+                vec![Filter::converted(conversion.parse().map_err(unknown)?)]
+            }
+            (FilterFile::FixedGain { modes, .. }, _) => {
+                let given = modes.iter().map(|mode| FixedGain {
+                    gain: matrix(&mode.gain, number),
+                    innovation_covariance: matrix(&mode.innovation_covariance, number),
+                });
+                given.map(Filter::given).collect()
+            }
+            _ => vec![Filter::kalman()],
+        })
     }
 
-    fn rule<T: Real, const N: usize>(&self, number: fn(f64) -> T) -> Result<Option<Rule<T, N>>, Invalid> {
+    fn rule<T: Real>(&self, number: fn(f64) -> T) -> Result<Option<Rule<T, Dyn>>, Invalid> {
+        let n = Dyn(self.state.len());
         let (field, rule) = match &self.filter {
             FilterFile::Kalman {} | FilterFile::FixedGain { .. } | FilterFile::Converted { .. } => return Ok(None),
             FilterFile::Cubature { rule } => (
                 "problem.filter.rule",
-                rule.parse::<RuleName>().and_then(|name| name.rule()),
+                rule.parse::<RuleName>().and_then(|name| name.rule_in(n)),
             ),
             FilterFile::Unscented { alpha, beta, kappa } => (
                 "problem.filter",
-                unscented::unscented_in(&number(*alpha), &number(*beta), &number(*kappa)),
+                unscented::unscented_in(n, &number(*alpha), &number(*beta), &number(*kappa)),
             ),
         };
         rule.map(Some)
@@ -217,34 +210,20 @@ impl ProblemFile {
     }
 }
 
-/// A rule in doubles, as lists whose lengths are known at run time: points, weights, covariance weights.
-type Columns = (Vec<Vec<f64>>, Vec<f64>, Vec<f64>);
-
 /// The rules in doubles that were asked for, by filter and dimension.
-static RULES: Mutex<BTreeMap<String, Option<Columns>>> = Mutex::new(BTreeMap::new());
+static RULES: Mutex<BTreeMap<String, Option<Rule<RandomRounding, Dyn>>>> = Mutex::new(BTreeMap::new());
 
 /// So many rules are kept; every α, β and κ is another, and a program that answers for days may see any number of them.
 const RULES_KEPT: usize = 100;
 
-fn as_columns<const N: usize>(rule: &Rule<f64, N>) -> Columns {
-    let points = rule.points.iter().map(|point| point.as_slice().to_vec()).collect();
-    (points, rule.weights.clone(), rule.covariance_weights.clone())
-}
-
-fn of_columns<const N: usize>((points, weights, covariance_weights): &Columns) -> Rule<f64, N> {
-    Rule {
-        points: points.iter().map(|point| vector(point, |value| value)).collect(),
-        weights: weights.clone(),
-        covariance_weights: covariance_weights.clone(),
-    }
-}
-
-/// A matrix of so many rows and columns from a list of rows.
-fn matrix<T: Real, const R: usize, const C: usize>(rows: &Rows, number: fn(f64) -> T) -> SMatrix<T, R, C> {
-    SMatrix::from_fn(|row, column| number(rows[row][column]))
+/// A matrix from a list of rows.
+fn matrix<T: Real>(rows: &Rows, number: fn(f64) -> T) -> DMatrix<T> {
+    DMatrix::from_fn(rows.len(), rows.first().map_or(0, Vec::len), |row, column| {
+        number(rows[row][column])
+    })
 }
 
 /// A vector from a list.
-fn vector<T: Real, const R: usize>(values: &[f64], number: fn(f64) -> T) -> SVector<T, R> {
-    SVector::from_fn(|row, _| number(values[row]))
+fn vector<T: Real>(values: &[f64], number: fn(f64) -> T) -> DVector<T> {
+    DVector::from_iterator(values.len(), values.iter().map(|&value| number(value)))
 }

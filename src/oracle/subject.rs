@@ -5,10 +5,7 @@
 
 use super::invalid::Invalid;
 use super::problem::ProblemFile;
-use super::run::Computed;
-use super::setup::Setup;
-use super::shape::{self, Work};
-use super::trace::{Dimensions, Trace};
+use super::trace::Trace;
 use super::variant;
 use crate::file::shortened;
 use serde_json::Value;
@@ -356,42 +353,32 @@ impl Subject for Planted {
                 reason: invalid.to_string(),
             };
         }
-        let Dimensions { n, m, .. } = problem.dimensions();
-        match shape::dispatch(n, m, RunPlanted { problem, planted: self }) {
-            Ok(Ok(answer)) => answer,
-            Ok(Err(invalid)) | Err(invalid) => Answer::Broken(Broken::Invalid(invalid)),
-        }
+        self.planted(problem)
+            .unwrap_or_else(|invalid| Answer::Broken(Broken::Invalid(invalid)))
     }
 }
 
-/// Runs a problem in doubles with variants.
-struct RunPlanted<'a> {
-    problem: &'a ProblemFile,
-    planted: &'a Planted,
-}
-
-impl Work for RunPlanted<'_> {
-    type Output = Result<Answer, Invalid>;
-
-    fn run<const N: usize, const M: usize>(self) -> Self::Output {
-        let mut setup: Setup<f64, N, M> = self.problem.setup_in_doubles()?;
-        for id in &self.planted.variants {
+impl Planted {
+    /// Runs a problem in doubles with the variants; what is shown of it.
+    fn planted(&self, problem: &ProblemFile) -> Result<Answer, Invalid> {
+        let mut setup = problem.setup_in_doubles()?;
+        for id in &self.variants {
             variant::apply(id, &mut setup);
         }
-        let Computed { values, failures } = setup.run();
-        let dimensions: Dimensions = setup.dimensions();
-        let mut trace = Trace::empty(dimensions);
+        let computed = setup.run();
+        let values = computed.in_doubles();
+        let mut trace = Trace::empty(setup.dimensions());
         for (step, quantity, mode) in values.all_places() {
             let Some(value) = values.get(step, quantity, mode) else {
                 continue;
             };
-            if self.planted.level.shows(quantity) {
+            if self.level.shows(quantity) {
                 trace.set(step, quantity, mode, value.clone());
             }
         }
         Ok(Answer::Steps {
             trace,
-            error: failures.first().map(ToString::to_string),
+            error: computed.failures.first().map(ToString::to_string),
         })
     }
 }

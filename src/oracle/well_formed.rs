@@ -7,9 +7,8 @@ use super::invalid::{Class, Invalid};
 use super::problem::{
     Conventions, FORMAT, FilterFile, FixedGainFile, MIXINGS, MeasurementFile, ProblemFile, RULES, Rows,
 };
-use super::shape;
 use super::trace::Dimensions;
-use crate::imm::InvalidProblem;
+use crate::imm::{InvalidProblem, Needs};
 use crate::model::Conversion;
 
 impl ProblemFile {
@@ -28,7 +27,13 @@ impl ProblemFile {
         check_size(self.dimensions())?;
         self.check_filter()?;
         self.check_measurements()?;
-        shape::dispatch(self.state.len(), self.noise.len(), TypedCheck(self))?
+        self.check_values()
+    }
+
+    /// Puts the problem into doubles and lets the cycle check it.
+    fn check_values(&self) -> Result<(), Invalid> {
+        let setup = self.setup_in_doubles()?;
+        setup.problem.check(&setup.initial).map_err(|error| of_problem(&error))
     }
 
     fn check_conventions(&self) -> Result<(), Invalid> {
@@ -61,6 +66,8 @@ impl ProblemFile {
 
     fn check_shapes(&self) -> Result<(), Invalid> {
         let Dimensions { n, m, r, .. } = self.dimensions();
+        check_count("problem.state", n, MOST_STATES)?;
+        check_count("problem.R", m, MOST_MEASURED)?;
         check_length("problem.units", self.units.len(), n)?;
         check_matrix("problem.R", &self.noise, m, m)?;
         if r == 0 {
@@ -91,12 +98,12 @@ impl ProblemFile {
             check_length(&format!("problem.initial.modes[{j}].mean"), estimate.mean.len(), n)?;
             let field = format!("problem.initial.modes[{j}].covariance");
             match &estimate.covariance {
-                Some(rows) if self.filter.scope().covariances => check_matrix(&field, rows, n, n)?,
+                Some(rows) if self.filter.has(Needs::Covariances) => check_matrix(&field, rows, n, n)?,
                 Some(_) => {
                     let reason = "is given, but filters with fixed gains have no covariance";
                     return Err(Invalid::new(Class::Format, field, reason));
                 }
-                None if self.filter.scope().covariances => {
+                None if self.filter.has(Needs::Covariances) => {
                     return Err(Invalid::new(Class::Format, field, "is missing"));
                 }
                 None => {}
@@ -190,6 +197,21 @@ impl ProblemFile {
 /// A trace is held in memory as a whole: so many numbers take about a gigabyte while they are written.
 const MOST_NUMBERS: usize = 10_000_000;
 
+/// The most components of a state. A problem of this size is certified in minutes; nothing else limits it.
+pub const MOST_STATES: usize = 32;
+
+/// The most components of a measurement.
+pub const MOST_MEASURED: usize = 16;
+
+/// A state or a measurement has at least one component, and not more than are computed with.
+fn check_count(field: &str, found: usize, most: usize) -> Result<(), Invalid> {
+    if (1..=most).contains(&found) {
+        return Ok(());
+    }
+    let reason = format!("has {found} components; there must be 1 to {most}");
+    Err(Invalid::new(Class::Shape, field, reason))
+}
+
 fn check_size(dimensions: Dimensions) -> Result<(), Invalid> {
     let numbers = dimensions.numbers();
     if numbers <= MOST_NUMBERS {
@@ -202,23 +224,13 @@ fn check_size(dimensions: Dimensions) -> Result<(), Invalid> {
     Err(Invalid::new(Class::Shape, "problem.measurements", reason))
 }
 
-/// Puts a problem into doubles and lets the cycle check it.
-struct TypedCheck<'a>(&'a ProblemFile);
-
-impl shape::Work for TypedCheck<'_> {
-    type Output = Result<(), Invalid>;
-
-    fn run<const N: usize, const M: usize>(self) -> Self::Output {
-        let setup = self.0.setup_in_doubles::<N, M>()?;
-        setup.problem.check(&setup.initial).map_err(|error| of_problem(&error))
-    }
-}
-
 /// The class and the place of what the cycle refuses.
 fn of_problem(error: &InvalidProblem) -> Invalid {
     let class = match error {
         InvalidProblem::Length { .. }
         | InvalidProblem::NoModes
+        | InvalidProblem::NoFilters
+        | InvalidProblem::Shape { .. }
         | InvalidProblem::RuleLengths { .. }
         | InvalidProblem::Position { .. }
         | InvalidProblem::PositionTwice { .. } => Class::Shape,
@@ -226,10 +238,10 @@ fn of_problem(error: &InvalidProblem) -> Invalid {
         InvalidProblem::NegativeProbability { .. } | InvalidProblem::NotNormalised { .. } => Class::NotAProbability,
         InvalidProblem::NotSymmetric { .. } => Class::NotSymmetric,
         InvalidProblem::NotPositive { .. } => Class::NotPositiveDefinite,
-        InvalidProblem::NotLinear
-        | InvalidProblem::Rule { .. }
-        | InvalidProblem::FixedGains { .. }
-        | InvalidProblem::Conversion { .. }
+        InvalidProblem::NotLinear { .. }
+        | InvalidProblem::SomeGiven
+        | InvalidProblem::NothingToDrawFrom
+        | InvalidProblem::TwoConversions
         | InvalidProblem::NotRangeAndBearing
         | InvalidProblem::CorrelatedNoise => Class::Unknown,
         InvalidProblem::CovarianceGiven { .. } => Class::Format,

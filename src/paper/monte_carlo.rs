@@ -7,7 +7,7 @@
 use super::simulation::{Run, Simulation};
 use crate::imm::{Imm, Step};
 use crate::number::Real;
-use nalgebra::SVector;
+use nalgebra::{Const, SVector};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use rayon::prelude::*;
@@ -78,10 +78,10 @@ pub fn run(simulation: &dyn Simulation, runs: usize, seed: u64, progress: Progre
 /// step and the truth.
 pub fn follow<const N: usize, const M: usize>(
     run: &mut Run,
-    filter: &mut Imm<f64, N, M>,
+    filter: &mut Imm<f64, Const<N>, Const<M>>,
     truth: &[SVector<f64, N>],
     measurements: &[SVector<f64, M>],
-    record: fn(&mut Run, &Step<f64, N, M>, &SVector<f64, N>),
+    record: fn(&mut Run, &Step<f64, Const<N>, Const<M>>, &SVector<f64, N>),
 ) {
     for (truth, measurement) in truth.iter().zip(measurements) {
         let start = Instant::now();

@@ -9,10 +9,10 @@ use super::specification::Choices;
 use crate::gaussian::Gaussian;
 use crate::imm::{Equations, Imm, Initial, Problem, Step};
 use crate::model::motion::{constant_velocity, coordinated_turn};
-use crate::model::{Conversion, Measurement};
+use crate::model::{Conversion, Sensor};
 use crate::rule::{Rule, RuleName};
 use crate::statistics::consistency::{nees, nis};
-use nalgebra::{Matrix4, Vector2, Vector4};
+use nalgebra::{Matrix4, U2, U4, Vector2, Vector4};
 
 /// What the target does in a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,9 +51,9 @@ pub struct Contestant {
     /// The paper's name for it.
     pub name: String,
     /// Its modes, chain, measurement and rule.
-    pub problem: Problem<f64, 4, 2>,
+    pub problem: Problem<f64, U4, U2>,
     /// Its equations.
-    pub equations: Equations<f64, 4, 2>,
+    pub equations: Equations<f64, U4, U2>,
     /// Its probabilities at step 0.
     pub initial_probabilities: Vec<f64>,
     /// The number of points of its rule, and of those with a weight other than zero; none for a Kalman filter.
@@ -68,7 +68,7 @@ impl Contestant {
     /// When the rule has no exact form in four dimensions, as a Gauss-Hermite rule has not.
     pub fn with_rule(
         name: &str,
-        problem: Problem<f64, 4, 2>,
+        problem: Problem<f64, U4, U2>,
         rule: &RuleName,
         initial_probabilities: Vec<f64>,
     ) -> Self {
@@ -77,10 +77,10 @@ impl Contestant {
         Self {
             name: name.to_owned(),
             problem: Problem {
-                rule: Some(rule),
+                filters: vec![crate::filter::Filter::points(rule)],
                 ..problem
             },
-            equations: Equations::cubature(),
+            equations: Equations::standard(),
             initial_probabilities,
             points: Some((exact.points.len(), exact.effective_points())),
         }
@@ -113,7 +113,7 @@ pub struct Scenario {
     /// A square root of the truth's process noise; none for a deterministic trajectory.
     pub truth_noise_root: Option<Matrix4<f64>>,
     /// What the sensor sees.
-    pub measurement: Measurement<f64, 4, 2>,
+    pub sensor: Sensor<f64, U4, U2>,
     /// The standard deviations of the measurement noise.
     pub measurement_deviations: Vector2<f64>,
     /// Whether every contestant sees the same noise.
@@ -132,7 +132,7 @@ pub struct Draw {
     /// The measurements of steps 1, 2, …
     pub measurements: Vec<Vector2<f64>>,
     /// The estimate at step 0, the same for every mode.
-    pub initial: Gaussian<f64, 4>,
+    pub initial: Gaussian<f64, U4>,
 }
 
 impl Scenario {
@@ -162,7 +162,7 @@ impl Scenario {
                 .measurement_deviations
                 .map(|deviation| deviation * generator.standard_normal());
             truth.push(state);
-            measurements.push(self.measurement.of(&state) + noise);
+            measurements.push(self.sensor.of(&state) + noise);
         }
         Draw {
             truth,
@@ -238,8 +238,8 @@ impl Simulation for Scenario {
             return None;
         }
         let draw = self.draw(&mut Generator::of_run(seed, 0));
-        let sensor = match &self.measurement {
-            Measurement::Polar { sensor, .. } => Some(*sensor),
+        let sensor = match &self.sensor {
+            Sensor::Polar { location, .. } => Some(*location),
             _ => None,
         };
         let position = |z: &Vector2<f64>| match sensor {
@@ -269,14 +269,14 @@ pub fn track(contestant: &Contestant, draw: &Draw) -> Run {
         modes: vec![draw.initial.clone(); contestant.problem.modes.len()],
         mode_probabilities: contestant.initial_probabilities.clone(),
     };
-    let mut filter = Imm::new(contestant.problem.clone(), contestant.equations, &initial)
+    let mut filter = Imm::with_equations(contestant.problem.clone(), contestant.equations, &initial)
         .expect("the scenarios' problems are part of the program");
     follow(&mut run, &mut filter, &draw.truth, &draw.measurements, record);
     run
 }
 
 /// Keeps what the statistics need of a step.
-fn record(run: &mut Run, step: &Step<f64, 4, 2>, truth: &Vector4<f64>) {
+fn record(run: &mut Run, step: &Step<f64, U4, U2>, truth: &Vector4<f64>) {
     run.errors.push(step.combined.mean - truth);
     run.nees.push(nees(&step.combined, truth));
     run.nis.extend(nis(step));

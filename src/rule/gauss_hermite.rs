@@ -5,8 +5,9 @@
 //! too: odd ones vanish by symmetry, even ones need the squares only, and the moments of a product are products of moments.
 
 use super::{InvalidRule, Rule};
+use crate::matrix::{Holds, Shapes};
 use crate::number::{Field, Rational, Real, Surd};
-use nalgebra::SVector;
+use nalgebra::{Dim, OVector, U1};
 use num_traits::{One, Zero};
 
 /// A node of one coordinate: ±√`square`, or zero.
@@ -124,6 +125,9 @@ pub fn moment(nodes: &[Node], power: usize) -> Surd {
     sum
 }
 
+/// The most points that a product rule may have here: a filter holds as many states, several times, in each mode.
+pub const MOST_POINTS: usize = 100_000;
+
 /// The product rule in N dimensions with m nodes a coordinate.
 ///
 /// ```text
@@ -137,7 +141,7 @@ pub fn moment(nodes: &[Node], power: usize) -> Surd {
 /// ```
 /// use immaculate::rule::gauss_hermite::gauss_hermite;
 ///
-/// let rule = gauss_hermite::<f64, 2>(3).unwrap();
+/// let rule = gauss_hermite::<f64, _>(U2, 3).unwrap();
 /// assert_eq!(rule.points.len(), 9);
 /// assert_eq!(rule.points[0].as_slice(), [0.0, 0.0]);
 /// assert_eq!(rule.weights[0], 2.0 / 3.0 * (2.0 / 3.0));
@@ -145,24 +149,40 @@ pub fn moment(nodes: &[Node], power: usize) -> Surd {
 ///
 /// # Errors
 ///
-/// [`InvalidRule::Nodes`] when m is not 2 to 5, [`InvalidRule::Dimension`] in dimension zero.
-pub fn gauss_hermite<T: Real, const N: usize>(m: usize) -> Result<Rule<T, N>, InvalidRule> {
-    if N == 0 {
+/// [`InvalidRule::Nodes`] when m is not 2 to 5, [`InvalidRule::Dimension`] in dimension zero, [`InvalidRule::TooManyPoints`] for more than
+/// [`MOST_POINTS`] of them.
+pub fn gauss_hermite<T: Real, N: Dim>(side: N, m: usize) -> Result<Rule<T, N>, InvalidRule>
+where
+    Shapes: Holds<N>,
+{
+    let n = side.value();
+    if n == 0 {
         return Err(InvalidRule::Dimension {
             rule: "gauss-hermite",
             least: 1,
-            dimension: N,
+            dimension: n,
             reason: "",
         });
     }
     let nodes = nodes(m)?;
+    let Some(count) = u32::try_from(n)
+        .ok()
+        .and_then(|n| m.checked_pow(n))
+        .filter(|&count| count <= MOST_POINTS)
+    else {
+        return Err(InvalidRule::TooManyPoints {
+            nodes: m,
+            dimension: n,
+            most: MOST_POINTS,
+        });
+    };
     let mut points = Vec::new();
     let mut weights = Vec::new();
-    for index in 0..m.pow(u32::try_from(N).unwrap_or(u32::MAX)) {
+    for index in 0..count {
         let mut digits = index;
         let mut weight = T::one();
-        let mut point = SVector::<T, N>::zeros();
-        for coordinate in 0..N {
+        let mut point = OVector::<T, N>::zeros_generic(side, U1);
+        for coordinate in 0..n {
             let node = &nodes[digits % m];
             digits /= m;
             point[coordinate] = T::surd(&node.square).sqrt() * T::integer(node.sign);

@@ -53,8 +53,9 @@ pub mod unscented;
 
 pub use name::RuleName;
 
-use crate::number::{Rational, Roots, Surd};
-use nalgebra::SVector;
+use crate::matrix::{Holds, Shapes};
+use crate::number::{Field, Rational, Roots, Surd};
+use nalgebra::{Dim, OVector, U1};
 use num_traits::Zero;
 
 /// What a rule cannot be built from.
@@ -99,6 +100,18 @@ pub enum InvalidRule {
     Nodes {
         /// The number that was asked for.
         nodes: usize,
+    },
+    /// A product rule with more points than are kept.
+    #[error(
+        "the Gauss-Hermite rule with {nodes} nodes a coordinate has {nodes}^{dimension} points in dimension {dimension}; at most {most} are computed"
+    )]
+    TooManyPoints {
+        /// Nodes a coordinate.
+        nodes: usize,
+        /// The dimension.
+        dimension: usize,
+        /// The most points that a rule may have.
+        most: usize,
     },
     /// A rule whose coordinates are not surds.
     #[error("the coordinates of a Gauss-Hermite product rule are nested roots, not surds")]
@@ -218,16 +231,22 @@ impl ExactRule {
 
 /// A rule in the numbers of a filter.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Rule<T, const N: usize> {
+pub struct Rule<T: Field, N: Dim>
+where
+    Shapes: Holds<N>,
+{
     /// The points ξₛ.
-    pub points: Vec<SVector<T, N>>,
+    pub points: Vec<OVector<T, N>>,
     /// The weights of means and cross-covariances, wₛ.
     pub weights: Vec<T>,
     /// The weights of covariances.
     pub covariance_weights: Vec<T>,
 }
 
-impl<T: Roots, const N: usize> Rule<T, N> {
+impl<T: Roots, N: Dim> Rule<T, N>
+where
+    Shapes: Holds<N>,
+{
     /// Turns an exact rule into the numbers of a filter, each coordinate and weight by itself: in doubles each is the one
     /// nearest to the exact value.
     ///
@@ -235,26 +254,28 @@ impl<T: Roots, const N: usize> Rule<T, N> {
     ///
     /// ```
     /// use immaculate::rule::{Rule, third_degree::third_degree};
+    /// use nalgebra::U4;
     ///
-    /// let rule = Rule::<f64, 4>::from_exact(&third_degree(4).unwrap()).unwrap();
+    /// let rule = Rule::<f64, U4>::from_exact(&third_degree(4).unwrap()).unwrap();
     /// assert_eq!(rule.points[0][0], 2.0);
     /// assert_eq!(rule.weights, vec![0.125; 8]);
     /// ```
     ///
     /// # Errors
     ///
-    /// [`InvalidRule::StateDimension`] when the rule's dimension is not N.
+    /// [`InvalidRule::StateDimension`] when the state has another dimension than the rule.
     pub fn from_exact(exact: &ExactRule) -> Result<Self, InvalidRule> {
-        if exact.dimension != N {
+        if let Some(state) = N::try_to_usize().filter(|&state| state != exact.dimension) {
             return Err(InvalidRule::StateDimension {
                 rule: exact.dimension,
-                state: N,
+                state,
             });
         }
+        let n = N::from_usize(exact.dimension);
         let points = exact
             .points
             .iter()
-            .map(|point| SVector::from_fn(|row, _| T::surd(&point[row])))
+            .map(|point| OVector::from_fn_generic(n, U1, |row, _| T::surd(&point[row])))
             .collect();
         Ok(Self {
             points,

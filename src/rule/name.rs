@@ -5,7 +5,9 @@
 use super::gauss_hermite::gauss_hermite;
 use super::unscented::{Parameters, unscented};
 use super::{ExactRule, InvalidRule, Rule, fifth_degree, printed, simplex, third_degree};
+use crate::matrix::{Holds, Shapes};
 use crate::number::Real;
+use nalgebra::{Dim, DimName};
 use std::str::FromStr;
 
 /// A rule by name.
@@ -65,15 +67,30 @@ impl RuleName {
         }
     }
 
-    /// The rule in the numbers of a filter.
+    /// The rule in the numbers of a filter whose dimension is a type.
     ///
     /// # Errors
     ///
     /// As [`RuleName::exact`].
-    pub fn rule<T: Real, const N: usize>(&self) -> Result<Rule<T, N>, InvalidRule> {
+    pub fn rule<T: Real, N: DimName>(&self) -> Result<Rule<T, N>, InvalidRule>
+    where
+        Shapes: Holds<N>,
+    {
+        self.rule_in(N::name())
+    }
+
+    /// The rule in the numbers of a filter, in dimension n.
+    ///
+    /// # Errors
+    ///
+    /// As [`RuleName::exact`].
+    pub fn rule_in<T: Real, N: Dim>(&self, n: N) -> Result<Rule<T, N>, InvalidRule>
+    where
+        Shapes: Holds<N>,
+    {
         match self {
-            Self::GaussHermite(m) => gauss_hermite(*m),
-            name => Rule::from_exact(&name.exact(N)?),
+            Self::GaussHermite(m) => gauss_hermite(n, *m),
+            name => Rule::from_exact(&name.exact(n.value())?),
         }
     }
 }

@@ -3,8 +3,9 @@
 //! After this file the reader knows both parametrisations of the unscented transform and when its centre weight is negative.
 
 use super::{ExactRule, InvalidRule, Rule, along_axis, dimension_as_rational, opposite};
+use crate::matrix::{Holds, Shapes};
 use crate::number::{Field, Rational, Real, Surd};
-use nalgebra::SVector;
+use nalgebra::{Dim, OVector, U1};
 use std::cmp::Ordering;
 
 /// The parameters of the unscented rule.
@@ -176,7 +177,7 @@ pub fn unscented(n: usize, parameters: &Parameters) -> Result<ExactRule, Invalid
 /// ```
 /// use immaculate::rule::unscented::unscented_in;
 ///
-/// let rule = unscented_in::<f64, 2>(&1.0, &0.0, &1.0).unwrap();
+/// let rule = unscented_in(U2, &1.0, &0.0, &1.0).unwrap();
 /// assert_eq!(rule.points[1][0], 3.0_f64.sqrt());
 /// assert_eq!(rule.weights[..2], [1.0 / 3.0, 1.0 / 6.0]);
 /// ```
@@ -186,8 +187,11 @@ pub fn unscented(n: usize, parameters: &Parameters) -> Result<ExactRule, Invalid
 /// [`InvalidRule::Radius`] when n + λ is not positive.
 ///
 /// Evidence: `the_unscented_rule_of_doubles_is_the_exact_one_rounded`.
-pub fn unscented_in<T: Real, const N: usize>(alpha: &T, beta: &T, kappa: &T) -> Result<Rule<T, N>, InvalidRule> {
-    let n = T::integer(i64::try_from(N).unwrap_or(i64::MAX));
+pub fn unscented_in<T: Real, N: Dim>(side: N, alpha: &T, beta: &T, kappa: &T) -> Result<Rule<T, N>, InvalidRule>
+where
+    Shapes: Holds<N>,
+{
+    let n = T::integer(i64::try_from(side.value()).unwrap_or(i64::MAX));
     let lambda = lambda(&n, alpha, kappa);
     let radius_squared = n.clone() + lambda.clone();
     if radius_squared.partial_cmp(&T::zero()) != Some(Ordering::Greater) {
@@ -196,10 +200,10 @@ pub fn unscented_in<T: Real, const N: usize>(alpha: &T, beta: &T, kappa: &T) -> 
         });
     }
     let radius = radius_squared.sqrt();
-    let mut points = vec![SVector::zeros()];
+    let mut points = vec![OVector::zeros_generic(side, U1)];
     for sign in [T::one(), -T::one()] {
-        for i in 0..N {
-            let mut point = SVector::<T, N>::zeros();
+        for i in 0..side.value() {
+            let mut point = OVector::<T, N>::zeros_generic(side, U1);
             point[i] = sign.clone() * radius.clone();
             points.push(point);
         }

@@ -10,7 +10,7 @@
 use crate::gaussian::Gaussian;
 use crate::imm::Step;
 use crate::matrix::{ldl, quadratic_form};
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{Const, SMatrix, SVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Normalised estimation error squared: (x − x̂)ᵀ P⁻¹ (x − x̂), without a unit; its expectation is N.
@@ -26,7 +26,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 /// let estimate = Gaussian { mean: vector![1.0], covariance: matrix![4.0] };
 /// assert_eq!(nees(&estimate, &vector![5.0]), 4.0);
 /// ```
-pub fn nees<const N: usize>(estimate: &Gaussian<f64, N>, truth: &SVector<f64, N>) -> f64 {
+pub fn nees<const N: usize>(estimate: &Gaussian<f64, Const<N>>, truth: &SVector<f64, N>) -> f64 {
     quadratic_form(&ldl(&estimate.covariance), &(truth - estimate.mean))
 }
 
@@ -46,7 +46,7 @@ pub fn nees<const N: usize>(estimate: &Gaussian<f64, N>, truth: &SVector<f64, N>
 /// use immaculate::statistics::consistency::nis;
 /// use nalgebra::{matrix, vector};
 ///
-/// let mut step = Step::<f64, 1, 1>::zeros(2, 0);
+/// let mut step = Step::<f64, U1, U1>::zeros(2, 0);
 /// step.measurement = Some(vector![0.0]);
 /// step.predicted_mode_probabilities = vec![0.5, 0.5];
 /// step.innovations = vec![vector![1.0], vector![3.0]];
@@ -55,7 +55,7 @@ pub fn nees<const N: usize>(estimate: &Gaussian<f64, N>, truth: &SVector<f64, N>
 /// step.measurement = None;
 /// assert_eq!(nis(&step), None);
 /// ```
-pub fn nis<const N: usize, const M: usize>(step: &Step<f64, N, M>) -> Option<f64> {
+pub fn nis<const N: usize, const M: usize>(step: &Step<f64, Const<N>, Const<M>>) -> Option<f64> {
     step.measurement?;
     let probabilities = &step.predicted_mode_probabilities;
     let mut mean = SVector::<f64, M>::zeros();

@@ -4,12 +4,13 @@
 //! the run begins: a filter that starts at the truth, and one for which the manoeuvre begins with the run, need not end the same way.
 
 use super::long_term::{Form, Setting, predict};
+use crate::filter::Filter;
 use crate::gaussian::Gaussian;
-use crate::imm::{Equations, Failure, Imm, Initial, InvalidProblem, Problem};
-use crate::model::Measurement;
+use crate::imm::{Failure, Imm, Initial, Interaction, InvalidProblem, Problem};
+use crate::model::Sensor;
 use crate::model::acceleration::{constant_acceleration, modes, position_matrix};
 use crate::number::Real;
-use nalgebra::{Matrix1, Matrix3, Vector1, Vector3};
+use nalgebra::{Matrix1, Matrix3, U1, U3, Vector1, Vector3};
 use rayon::prelude::*;
 
 /// How the simulated filter begins.
@@ -79,7 +80,7 @@ pub fn simulate(setting: &Setting, start: Start, mut noise: impl FnMut() -> f64)
         ],
         mode_probabilities: probabilities,
     };
-    let mut filter = Imm::new(problem, Equations::kalman(), &initial)?;
+    let mut filter = Imm::new(problem, &initial)?;
     let deviation = Real::sqrt(&setting.measurement_variance);
     let (mut error, mut probability) = (Matrix3::zeros(), 0.0);
     for step in 0..SETTLING + POINTS {
@@ -96,14 +97,14 @@ pub fn simulate(setting: &Setting, start: Start, mut noise: impl FnMut() -> f64)
 }
 
 /// The problem of the IMM filter.
-fn imm_problem(setting: &Setting) -> Problem<f64, 3, 1> {
+fn imm_problem(setting: &Setting) -> Problem<f64, U3, U1> {
     Problem {
         modes: modes(&setting.interval, &setting.noises).to_vec(),
-        transition: setting.chain(),
-        measurement: Measurement::Linear(position_matrix()),
+        chain: setting.chain(),
+        sensor: Sensor::Linear(position_matrix()),
         measurement_noise: Matrix1::new(setting.measurement_variance),
-        rule: None,
-        fixed_gains: None,
+        filters: vec![Filter::kalman()],
+        interaction: Interaction::Imm,
     }
 }
 

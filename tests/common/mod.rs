@@ -6,13 +6,14 @@ pub mod program;
 pub mod runs;
 pub mod svg;
 
+use immaculate::filter::Filter;
 use immaculate::filter::fixed_gain::FixedGain;
 use immaculate::gaussian::Gaussian;
-use immaculate::imm::{Equations, Failure, Imm, Initial, InvalidProblem, Problem, Step};
-use immaculate::model::motion::{Mode, constant_velocity, coordinated_turn, integrated_noise};
-use immaculate::model::{Conversion, Measurement, PolarComponent};
+use immaculate::imm::{Equations, Failure, Imm, Initial, Interaction, InvalidProblem, Problem, Step};
+use immaculate::model::motion::{Mode, Motion, constant_velocity, coordinated_turn, integrated_noise};
+use immaculate::model::{Conversion, PolarComponent, Sensor};
 use immaculate::rule::RuleName;
-use nalgebra::{Matrix4, SMatrix, SVector, Vector2, Vector4, matrix, vector};
+use nalgebra::{Matrix4, SMatrix, SVector, U2, U4, Vector2, Vector4, matrix, vector};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
@@ -32,23 +33,23 @@ pub const CHAIN: [[f64; 3]; 3] = [[0.9, 0.06, 0.04], [0.15, 0.8, 0.05], [0.02, 0
 #[derive(Clone)]
 pub struct Scene {
     /// What the filter is given.
-    pub problem: Problem<f64, 4, 2>,
+    pub problem: Problem<f64, U4, U2>,
     /// The equations it computes.
-    pub equations: Equations<f64, 4, 2>,
+    pub equations: Equations<f64, U4, U2>,
     /// Its estimate at step 0.
-    pub initial: Initial<f64, 4>,
+    pub initial: Initial<f64, U4>,
     /// What it measures, or misses, step by step.
     pub measurements: Vec<Option<Vector2<f64>>>,
 }
 
 impl Scene {
     /// The filter at step 0.
-    pub fn filter(&self) -> Result<Imm<f64, 4, 2>, InvalidProblem> {
-        Imm::new(self.problem.clone(), self.equations, &self.initial)
+    pub fn filter(&self) -> Result<Imm<f64, U4, U2>, InvalidProblem> {
+        Imm::with_equations(self.problem.clone(), self.equations, &self.initial)
     }
 
     /// The steps from 1 on, up to the failure if there is one.
-    pub fn try_run(&self) -> Result<Vec<Step<f64, 4, 2>>, Failure> {
+    pub fn try_run(&self) -> Result<Vec<Step<f64, U4, U2>>, Failure> {
         let mut filter = self.filter().expect("the scene is a valid problem");
         let mut steps = Vec::new();
         for z in &self.measurements {
@@ -58,7 +59,7 @@ impl Scene {
     }
 
     /// The steps from 1 on.
-    pub fn run(&self) -> Vec<Step<f64, 4, 2>> {
+    pub fn run(&self) -> Vec<Step<f64, U4, U2>> {
         self.try_run().expect("every step can be computed")
     }
 }
@@ -67,8 +68,8 @@ impl Scene {
 pub fn linear_scene() -> Scene {
     let h = matrix![1.0, 0.0, 0.0, 0.0; 0.0, 0.0, 1.0, 0.0];
     Scene {
-        problem: problem(Measurement::Linear(h), [1600.0, 400.0]),
-        equations: Equations::kalman(),
+        problem: problem(Sensor::Linear(h), [1600.0, 400.0]),
+        equations: Equations::standard(),
         initial: initial(),
         measurements: measurements(|x, y, noise| vector![x + 40.0 * noise[0], y + 20.0 * noise[1]]),
     }
@@ -81,8 +82,7 @@ pub fn fixed_gain_scene() -> Scene {
         gain: matrix![0.5 + 0.1 * j, 0.02; 0.2, -0.01 * j; 0.03, 0.7 - 0.1 * j; 0.01, 0.3],
         innovation_covariance: matrix![3000.0 + 500.0 * j, 60.0; 60.0, 900.0 - 100.0 * j],
     };
-    scene.problem.fixed_gains = Some([0.0, 1.0, 2.0].map(given).to_vec());
-    scene.equations = Equations::fixed_gain();
+    scene.problem.filters = [0.0, 1.0, 2.0].map(given).map(Filter::given).to_vec();
     for estimate in &mut scene.initial.modes {
         estimate.covariance.fill(0.0);
     }
@@ -95,39 +95,31 @@ pub fn polar_scene(rule: &str) -> Scene {
 }
 
 /// The same seen from a sensor elsewhere.
-pub fn polar_scene_seen_from(sensor: [f64; 2], rule: &str) -> Scene {
-    let mut problem = problem(range_bearing_from(sensor), [1600.0, 49e-6]);
-    problem.rule = Some(rule_of(rule));
+pub fn polar_scene_seen_from(location: [f64; 2], rule: &str) -> Scene {
+    let mut problem = problem(range_bearing_from(location), [1600.0, 49e-6]);
+    problem.filters = vec![Filter::points(rule_of(rule))];
     Scene {
         problem,
-        equations: Equations::cubature(),
+        equations: Equations::standard(),
         initial: initial(),
         measurements: measurements(|x, y, noise| {
-            let (x, y) = (x - sensor[0], y - sensor[1]);
+            let (x, y) = (x - location[0], y - location[1]);
             vector![x.hypot(y) + 40.0 * noise[0], y.atan2(x) + 0.007 * noise[1]]
         }),
     }
 }
 
 /// The same converted to positions.
-pub fn converted_scene(conversion: Conversion, sensor: [f64; 2]) -> Scene {
-    let mut scene = polar_scene_seen_from(sensor, "simplex-5");
-    scene.problem.rule = None;
-    scene.problem.measurement = Measurement::Converted {
-        components: [PolarComponent::Range, PolarComponent::Bearing],
-        position: [0, 2],
-        sensor,
-        conversion,
-    };
-    scene.equations = Equations::converted();
+pub fn converted_scene(conversion: Conversion, location: [f64; 2]) -> Scene {
+    let mut scene = polar_scene_seen_from(location, "simplex-5");
+    scene.problem.filters = vec![Filter::converted(conversion)];
     scene
 }
 
 /// The linear scene for cubature filters with the named rule.
 pub fn linear_scene_with(rule: &str) -> Scene {
     let mut scene = linear_scene();
-    scene.problem.rule = Some(rule_of(rule));
-    scene.equations = Equations::cubature();
+    scene.problem.filters = vec![Filter::points(rule_of(rule))];
     scene
 }
 
@@ -142,47 +134,47 @@ pub fn all_scenes() -> Vec<(String, Scene)> {
 }
 
 /// A rule by name.
-pub fn rule_of(name: &str) -> immaculate::rule::Rule<f64, 4> {
+pub fn rule_of(name: &str) -> immaculate::rule::Rule<f64, U4> {
     let name: RuleName = name.parse().expect("a known rule");
     name.rule().expect("a rule of dimension four")
 }
 
 /// Range and bearing from a sensor.
-pub fn range_bearing_from(sensor: [f64; 2]) -> Measurement<f64, 4, 2> {
-    Measurement::Polar {
-        components: [PolarComponent::Range, PolarComponent::Bearing],
+pub fn range_bearing_from(location: [f64; 2]) -> Sensor<f64, U4, U2> {
+    Sensor::Polar {
+        components: vec![PolarComponent::Range, PolarComponent::Bearing],
         position: [0, 2],
-        sensor,
+        location,
     }
 }
 
 /// A mode under white acceleration noise of 1 m²/s³, with steps of a second.
-pub fn mode(name: &str, transition: Matrix4<f64>) -> Mode<f64, 4> {
+pub fn mode(name: &str, transition: Matrix4<f64>) -> Mode<f64, U4> {
     Mode {
         name: name.to_owned(),
-        transition,
+        motion: Motion::Linear(transition),
         noise: integrated_noise(&1.0, &1.0),
     }
 }
 
 /// The problem of constant velocity and two turns.
-fn problem(measurement: Measurement<f64, 4, 2>, noise: [f64; 2]) -> Problem<f64, 4, 2> {
+fn problem(sensor: Sensor<f64, U4, U2>, noise: [f64; 2]) -> Problem<f64, U4, U2> {
     Problem {
         modes: vec![
             mode("constant velocity", constant_velocity(&1.0)),
             mode("left turn", coordinated_turn(&TURN_RATE, &1.0)),
             mode("right turn", coordinated_turn(&-TURN_RATE, &1.0)),
         ],
-        transition: CHAIN.map(|row| row.to_vec()).to_vec(),
-        measurement,
+        chain: CHAIN.map(|row| row.to_vec()).to_vec(),
+        sensor,
         measurement_noise: SMatrix::from_diagonal(&SVector::from(noise)),
-        rule: None,
-        fixed_gains: None,
+        filters: vec![Filter::kalman()],
+        interaction: Interaction::Imm,
     }
 }
 
 /// Three estimates that differ from each other, with correlated covariances, so that no equation sees a special case.
-fn initial() -> Initial<f64, 4> {
+fn initial() -> Initial<f64, U4> {
     let covariance = matrix![
         1e4, 300.0, 800.0, 20.0;
         300.0, 100.0, -15.0, 5.0;
@@ -238,7 +230,7 @@ fn standard_noise(generator: &mut ChaCha8Rng) -> f64 {
 }
 
 /// How far two estimates are apart, in standard deviations of the second: the greatest of |Δx̂ᵢ|/√Pᵢᵢ and |ΔPᵢⱼ|/√(PᵢᵢPⱼⱼ).
-pub fn distance(a: &Gaussian<f64, 4>, b: &Gaussian<f64, 4>) -> f64 {
+pub fn distance(a: &Gaussian<f64, U4>, b: &Gaussian<f64, U4>) -> f64 {
     let deviation = b.covariance.diagonal().map(f64::sqrt);
     let mut greatest = 0.0_f64;
     for i in 0..4 {
@@ -252,7 +244,7 @@ pub fn distance(a: &Gaussian<f64, 4>, b: &Gaussian<f64, 4>) -> f64 {
 }
 
 /// How far two runs are apart: the greatest distance of their estimates in standard deviations, or of their mode probabilities.
-pub fn distance_of_runs(a: &[Step<f64, 4, 2>], b: &[Step<f64, 4, 2>]) -> f64 {
+pub fn distance_of_runs(a: &[Step<f64, U4, U2>], b: &[Step<f64, U4, U2>]) -> f64 {
     assert_eq!(a.len(), b.len());
     let mut greatest = 0.0_f64;
     for (a, b) in a.iter().zip(b) {
@@ -267,7 +259,7 @@ pub fn distance_of_runs(a: &[Step<f64, 4, 2>], b: &[Step<f64, 4, 2>]) -> f64 {
 }
 
 /// All estimates of a step, mode by mode, then the combined ones.
-fn estimates(step: &Step<f64, 4, 2>) -> Vec<&Gaussian<f64, 4>> {
+fn estimates(step: &Step<f64, U4, U2>) -> Vec<&Gaussian<f64, U4>> {
     let modes = step.mixed.iter().chain(&step.predicted).chain(&step.updated);
     modes.chain([&step.combined_prediction, &step.combined]).collect()
 }
@@ -285,7 +277,7 @@ fn worse(a: f64, b: f64) -> f64 {
 /// A rounding of a coordinate x is at most 2⁻⁵³ |x|, that is 2⁻⁵³ |x|/σ of its standard deviation. Each value of a step is
 /// computed in fewer than a thousand roundings (a sum over the 81 points of the greatest rule, the products that make a point, ten
 /// equations in a row). A filter forgets its past, so the roundings of the steps add at most.
-pub fn rounding_of(run: &[Step<f64, 4, 2>]) -> f64 {
+pub fn rounding_of(run: &[Step<f64, U4, U2>]) -> f64 {
     let mut digits_lost = 1.0_f64;
     for estimate in run.iter().flat_map(estimates) {
         for i in 0..4 {
@@ -303,7 +295,7 @@ pub fn bits<'a>(values: impl IntoIterator<Item = &'a f64>) -> Vec<u64> {
 }
 
 /// The bits of all values of a step for one mode, measured ones included.
-pub fn bits_of_mode(step: &Step<f64, 4, 2>, j: usize) -> Vec<u64> {
+pub fn bits_of_mode(step: &Step<f64, U4, U2>, j: usize) -> Vec<u64> {
     let mut all = Vec::new();
     for estimate in [&step.mixed[j], &step.predicted[j], &step.updated[j]] {
         all.extend(bits_of(estimate));
@@ -318,7 +310,7 @@ pub fn bits_of_mode(step: &Step<f64, 4, 2>, j: usize) -> Vec<u64> {
 }
 
 /// The bits of an estimate.
-pub fn bits_of(estimate: &Gaussian<f64, 4>) -> Vec<u64> {
+pub fn bits_of(estimate: &Gaussian<f64, U4>) -> Vec<u64> {
     let mut all = bits(&estimate.mean);
     all.extend(bits(&estimate.covariance));
     all

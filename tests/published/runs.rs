@@ -6,7 +6,7 @@
 
 use super::draft::{Draft, estimate, filter, mode, rounded_to, unscented, words};
 use super::numbers::rounded_rows;
-use immaculate::model::Measurement;
+use immaculate::model::Sensor;
 use immaculate::oracle::problem::{FilterFile, MeasurementFile, ProblemFile};
 use immaculate::paper::Paper;
 use immaculate::paper::monte_carlo::Generator;
@@ -45,7 +45,7 @@ fn inputs(scenario: &Scenario, draw: &Draw, mean: &[f64]) -> Draft {
     let problem = &contestant.problem;
     let start = estimate(mean, rounded_rows(&draw.initial.covariance));
     let parts = problem.modes.iter().map(|m| {
-        let mode = mode(&m.name, rounded_rows(&m.transition), rounded_rows(&m.noise));
+        let mode = mode(&m.name, rounded_rows(&m.motion.matrix()), rounded_rows(&m.noise));
         (mode, start.clone())
     });
     let probabilities: Vec<f64> = contestant
@@ -54,20 +54,19 @@ fn inputs(scenario: &Scenario, draw: &Draw, mean: &[f64]) -> Draft {
         .map(|&probability| rounded_to(probability, PROBABILITY_DIGITS))
         .collect();
     let draft = Draft::new(&["x", "vx", "y", "vy"], &["m", "m/s", "m", "m/s"], parts.collect())
-        .chain(problem.transition.clone(), &probabilities);
+        .chain(problem.chain.clone(), &probabilities);
     draft.with(|file| {
         file.noise = rounded_rows(&problem.measurement_noise);
-        file.measurement = match &problem.measurement {
-            Measurement::Linear(h) => MeasurementFile::Linear {
+        file.measurement = match &problem.sensor {
+            Sensor::Linear(h) => MeasurementFile::Linear {
                 matrix: rounded_rows(h),
             },
-            Measurement::Polar { position, sensor, .. } | Measurement::Converted { position, sensor, .. } => {
-                MeasurementFile::RangeBearing {
-                    components: words(&["range", "bearing"]),
-                    position: *position,
-                    sensor: *sensor,
-                }
-            }
+            Sensor::Polar { position, location, .. } => MeasurementFile::RangeBearing {
+                components: words(&["range", "bearing"]),
+                position: *position,
+                sensor: *location,
+            },
+            Sensor::Function { .. } => unreachable!("no paper has one"),
         };
     })
 }

@@ -3,43 +3,43 @@
 //! After this file the reader knows how a bearing goes wrong by its axes, its sign, its unit and its cut at ±π.
 
 use super::super::setup::Setup;
-use super::{draws_points, weights};
+use super::{draws_points, is_linear, weights};
 use crate::imm::{Problem, Step};
-use crate::model::{Measurement, PolarComponent};
+use crate::model::{PolarComponent, Sensor};
 use crate::number::Real;
-use nalgebra::SVector;
+use nalgebra::{DVector, Dyn};
 
 /// Applies a variant of range and bearing; whether it is one.
-pub(super) fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+pub(super) fn apply<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     of_function(id, setup) || of_place(id, setup) || of_wrapping(id, setup)
 }
 
 /// The measurement function, of the points and of the centre about which their bearings are averaged.
-fn of_function<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
-    let is_polar = matches!(setup.problem.measurement, Measurement::Polar { .. }) && draws_points(setup);
+fn of_function<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
+    let is_polar = !is_linear(&setup.problem) && draws_points(setup);
     if !is_polar {
         return FUNCTIONS.contains(&id);
     }
     let equations = &mut setup.equations;
     match id {
         "bearing-by-plain-arctangent" => {
-            equations.measured_point = |problem, _, now, j, s| plain_arctangent(problem, &now.predicted_points[j][s]);
+            equations.measured_points = |problem, _, now, j| measured(problem, now, j, plain_arctangent);
             equations.predicted_measurement = |problem, _, now, j| mean(problem, now, j, plain_arctangent);
         }
         "bearing-from-the-y-axis" => {
-            equations.measured_point = |problem, _, now, j, s| from_y_axis(problem, &now.predicted_points[j][s]);
+            equations.measured_points = |problem, _, now, j| measured(problem, now, j, from_y_axis);
             equations.predicted_measurement = |problem, _, now, j| mean(problem, now, j, from_y_axis);
         }
         "bearing-clockwise" => {
-            equations.measured_point = |problem, _, now, j, s| clockwise(problem, &now.predicted_points[j][s]);
+            equations.measured_points = |problem, _, now, j| measured(problem, now, j, clockwise);
             equations.predicted_measurement = |problem, _, now, j| mean(problem, now, j, clockwise);
         }
         "bearing-in-degrees" => {
-            equations.measured_point = |problem, _, now, j, s| in_degrees(problem, &now.predicted_points[j][s]);
+            equations.measured_points = |problem, _, now, j| measured(problem, now, j, in_degrees);
             equations.predicted_measurement = |problem, _, now, j| mean(problem, now, j, in_degrees);
         }
         "range-without-root" => {
-            equations.measured_point = |problem, _, now, j, s| without_root(problem, &now.predicted_points[j][s]);
+            equations.measured_points = |problem, _, now, j| measured(problem, now, j, without_root);
             equations.predicted_measurement = |problem, _, now, j| mean(problem, now, j, without_root);
         }
         _ => return false,
@@ -57,25 +57,24 @@ const FUNCTIONS: [&str; 5] = [
 ];
 
 /// Where the sensor and the target are.
-fn of_place<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_place<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
+    let n = setup.problem.n().0;
     let mut nowhere = ([0; 2], [T::zero(), T::zero()]);
-    let (position, sensor) = match &mut setup.problem.measurement {
-        Measurement::Polar { position, sensor, .. } | Measurement::Converted { position, sensor, .. } => {
-            (position, sensor)
-        }
-        Measurement::Linear(_) => (&mut nowhere.0, &mut nowhere.1),
+    let (position, sensor) = match &mut setup.problem.sensor {
+        Sensor::Polar { position, location, .. } => (position, location),
+        Sensor::Linear(_) | Sensor::Function { .. } => (&mut nowhere.0, &mut nowhere.1),
     };
     match id {
         "sensor-position-ignored" => *sensor = [T::zero(), T::zero()],
         "sensor-position-added" => *sensor = sensor.clone().map(|coordinate| -coordinate),
-        "position-from-the-first-entries" => *position = [0, 1.min(N - 1)],
+        "position-from-the-first-entries" => *position = [0, 1.min(n - 1)],
         _ => return false,
     }
     true
 }
 
 /// The cut at ±π.
-fn of_wrapping<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_wrapping<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let points = draws_points(setup);
     let equations = &mut setup.equations;
     let (mean, deviations, innovation) = match id {
@@ -92,30 +91,43 @@ fn of_wrapping<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Se
         *equations = equations.clone().with_plain_deviations();
     }
     // A converted measurement has no bearing any more.
-    if innovation && !setup.problem.measurement.is_converted() {
+    if innovation && setup.problem.conversion().is_none() {
         *equations = equations.clone().with_plain_innovation();
     }
     true
 }
 
+/// What is measured of a state.
+type OfState<T> = fn(&Problem<T, Dyn, Dyn>, &DVector<T>) -> DVector<T>;
+
 /// The mean of the points' measurements about the measurement of the centre by the same function.
-fn mean<T: Real, const N: usize, const M: usize>(
-    problem: &Problem<T, N, M>,
-    now: &Step<T, N, M>,
+fn mean<T: Real>(
+    problem: &Problem<T, Dyn, Dyn>,
+    now: &Step<T, Dyn, Dyn>,
     j: usize,
-    function: fn(&Problem<T, N, M>, &SVector<T, N>) -> SVector<T, M>,
-) -> SVector<T, M> {
+    function: OfState<T>,
+) -> DVector<T> {
     let centre = function(problem, &now.predicted[j].mean);
     problem
-        .measurement
-        .mean(weights(problem).0, &now.measured_points[j], &centre)
+        .sensor
+        .mean(weights(problem, j).0, &now.measured_points[j], &centre)
+}
+
+/// What a function of the state gives for the points of the prediction.
+fn measured<T: Real>(
+    problem: &Problem<T, Dyn, Dyn>,
+    now: &Step<T, Dyn, Dyn>,
+    j: usize,
+    function: OfState<T>,
+) -> Vec<DVector<T>> {
+    now.predicted_points[j]
+        .iter()
+        .map(|point| function(problem, point))
+        .collect()
 }
 
 /// atan(y/x)
-fn plain_arctangent<T: Real, const N: usize, const M: usize>(
-    problem: &Problem<T, N, M>,
-    state: &SVector<T, N>,
-) -> SVector<T, M> {
+fn plain_arctangent<T: Real>(problem: &Problem<T, Dyn, Dyn>, state: &DVector<T>) -> DVector<T> {
     polar(
         problem,
         state,
@@ -125,26 +137,17 @@ fn plain_arctangent<T: Real, const N: usize, const M: usize>(
 }
 
 /// atan2(x, y), the compass bearing of a y-axis to the north
-fn from_y_axis<T: Real, const N: usize, const M: usize>(
-    problem: &Problem<T, N, M>,
-    state: &SVector<T, N>,
-) -> SVector<T, M> {
+fn from_y_axis<T: Real>(problem: &Problem<T, Dyn, Dyn>, state: &DVector<T>) -> DVector<T> {
     polar(problem, state, |x, y| T::atan2(x, y), T::sqrt)
 }
 
 /// −atan2(y, x), of a y-axis that points down
-fn clockwise<T: Real, const N: usize, const M: usize>(
-    problem: &Problem<T, N, M>,
-    state: &SVector<T, N>,
-) -> SVector<T, M> {
+fn clockwise<T: Real>(problem: &Problem<T, Dyn, Dyn>, state: &DVector<T>) -> DVector<T> {
     polar(problem, state, |x, y| -T::atan2(y, x), T::sqrt)
 }
 
 /// 180 atan2(y, x) / π
-fn in_degrees<T: Real, const N: usize, const M: usize>(
-    problem: &Problem<T, N, M>,
-    state: &SVector<T, N>,
-) -> SVector<T, M> {
+fn in_degrees<T: Real>(problem: &Problem<T, Dyn, Dyn>, state: &DVector<T>) -> DVector<T> {
     polar(
         problem,
         state,
@@ -154,31 +157,28 @@ fn in_degrees<T: Real, const N: usize, const M: usize>(
 }
 
 /// x² + y²
-fn without_root<T: Real, const N: usize, const M: usize>(
-    problem: &Problem<T, N, M>,
-    state: &SVector<T, N>,
-) -> SVector<T, M> {
+fn without_root<T: Real>(problem: &Problem<T, Dyn, Dyn>, state: &DVector<T>) -> DVector<T> {
     polar(problem, state, |x, y| T::atan2(y, x), T::clone)
 }
 
 /// Range and bearing of a state; the range from its square, the bearing from the coordinates.
-fn polar<T: Real, const N: usize, const M: usize>(
-    problem: &Problem<T, N, M>,
-    state: &SVector<T, N>,
+fn polar<T: Real>(
+    problem: &Problem<T, Dyn, Dyn>,
+    state: &DVector<T>,
     bearing: fn(&T, &T) -> T,
     range: fn(&T) -> T,
-) -> SVector<T, M> {
-    let Measurement::Polar {
+) -> DVector<T> {
+    let Sensor::Polar {
         components,
         position,
-        sensor,
-    } = &problem.measurement
+        location,
+    } = &problem.sensor
     else {
-        return problem.measurement.of(state);
+        return problem.sensor.of(state);
     };
-    let x = state[position[0]].clone() - sensor[0].clone();
-    let y = state[position[1]].clone() - sensor[1].clone();
-    SVector::from_fn(|row, _| match components[row] {
+    let x = state[position[0]].clone() - location[0].clone();
+    let y = state[position[1]].clone() - location[1].clone();
+    DVector::from_fn(components.len(), |row, _| match components[row] {
         PolarComponent::Range => range(&(x.clone() * x.clone() + y.clone() * y.clone())),
         PolarComponent::Bearing => bearing(&x, &y),
     })

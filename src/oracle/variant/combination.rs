@@ -8,28 +8,29 @@ use super::or_initial;
 use crate::gaussian::{mixture_covariance, mixture_mean};
 use crate::imm::Step;
 use crate::number::Real;
+use nalgebra::Dyn;
 
 /// Applies a variant of the combination; whether it is one.
-pub(super) fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+pub(super) fn apply<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     of_prediction(id, setup) || of_estimate(id, setup) || of_covariance(id, setup)
 }
 
 /// The combined prediction.
-fn of_prediction<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_prediction<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let equations = &mut setup.equations;
     match id {
         // μ(k−1) for c
         "prediction-combined-with-old-probabilities" => {
             equations.combined_prediction_mean =
-                |_, previous, now| mixture_mean(&previous.mode_probabilities, &now.predicted);
-            equations.combined_prediction_covariance = |_, previous, now| {
+                |_, previous, now, _| mixture_mean(&previous.mode_probabilities, &now.predicted);
+            equations.combined_prediction_covariance = |_, previous, now, _| {
                 let mean = &now.combined_prediction.mean;
                 mixture_covariance(&previous.mode_probabilities, &now.predicted, mean)
             };
         }
         "prediction-spread-omitted" => {
             equations.combined_prediction_covariance =
-                |_, _, now| without_spread(&now.predicted_mode_probabilities, &now.predicted);
+                |_, _, now, _| without_spread(&now.predicted_mode_probabilities, &now.predicted);
         }
         _ => return false,
     }
@@ -37,40 +38,41 @@ fn of_prediction<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut 
 }
 
 /// The combined estimate, mean and covariance.
-fn of_estimate<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_estimate<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let equations = &mut setup.equations;
     match id {
         // c for μ
         "combined-with-predicted-probabilities" => {
             equations.combined_mean =
-                |_, _, now| mixture_mean(or_initial(now, &now.predicted_mode_probabilities), &now.updated);
-            equations.combined_covariance = |_, _, now| {
+                |_, _, now, _| mixture_mean(or_initial(now, &now.predicted_mode_probabilities), &now.updated);
+            equations.combined_covariance = |_, _, now, _| {
                 let weights = or_initial(now, &now.predicted_mode_probabilities);
                 mixture_covariance(weights, &now.updated, &now.combined.mean)
             };
         }
         // μ(k−1) for μ
         "combined-with-old-probabilities" => {
-            equations.combined_mean = |_, previous, now| mixture_mean(&previous.mode_probabilities, &now.updated);
-            equations.combined_covariance =
-                |_, previous, now| mixture_covariance(&previous.mode_probabilities, &now.updated, &now.combined.mean);
+            equations.combined_mean = |_, previous, now, _| mixture_mean(&previous.mode_probabilities, &now.updated);
+            equations.combined_covariance = |_, previous, now, _| {
+                mixture_covariance(&previous.mode_probabilities, &now.updated, &now.combined.mean)
+            };
         }
         // 1/r for μ
         "combined-with-equal-weights" => {
-            equations.combined_mean = |_, _, now| mixture_mean(&equal(now), &now.updated);
+            equations.combined_mean = |_, _, now, _| mixture_mean(&equal(now), &now.updated);
             equations.combined_covariance =
-                |_, _, now| mixture_covariance(&equal(now), &now.updated, &now.combined.mean);
+                |_, _, now, _| mixture_covariance(&equal(now), &now.updated, &now.combined.mean);
         }
         "combined-of-the-most-probable-mode" => {
-            equations.combined_mean = |_, _, now| now.updated[most_probable(&now.mode_probabilities)].mean.clone();
+            equations.combined_mean = |_, _, now, _| now.updated[most_probable(&now.mode_probabilities)].mean.clone();
             equations.combined_covariance =
-                |_, _, now| now.updated[most_probable(&now.mode_probabilities)].covariance.clone();
+                |_, _, now, _| now.updated[most_probable(&now.mode_probabilities)].covariance.clone();
         }
         // x̂⁻, P⁻ for x̂, P
         "combined-of-predicted-estimates" => {
-            equations.combined_mean = |_, _, now| mixture_mean(&now.mode_probabilities, shown(now));
+            equations.combined_mean = |_, _, now, _| mixture_mean(&now.mode_probabilities, shown(now));
             equations.combined_covariance =
-                |_, _, now| mixture_covariance(&now.mode_probabilities, shown(now), &now.combined.mean);
+                |_, _, now, _| mixture_covariance(&now.mode_probabilities, shown(now), &now.combined.mean);
         }
         _ => return false,
     }
@@ -78,23 +80,23 @@ fn of_estimate<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Se
 }
 
 /// The combined covariance.
-fn of_covariance<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_covariance<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let entry = &mut setup.equations.combined_covariance;
     match id {
         // Σⱼ μⱼ Pʲ
-        "combined-spread-omitted" => *entry = |_, _, now| without_spread(&now.mode_probabilities, &now.updated),
+        "combined-spread-omitted" => *entry = |_, _, now, _| without_spread(&now.mode_probabilities, &now.updated),
         // Σⱼ μⱼ² · [ … ]
         "combined-covariance-weights-squared" => {
             *entry =
-                |_, _, now| mixture_covariance(&squared(&now.mode_probabilities), &now.updated, &now.combined.mean);
+                |_, _, now, _| mixture_covariance(&squared(&now.mode_probabilities), &now.updated, &now.combined.mean);
         }
         // the scalar (x̂ʲ − x̂)ᵀ(x̂ʲ − x̂) added to every entry
         "combined-spread-inner-product" => {
-            *entry = |_, _, now| with_inner_products(&now.mode_probabilities, &now.updated, &now.combined.mean);
+            *entry = |_, _, now, _| with_inner_products(&now.mode_probabilities, &now.updated, &now.combined.mean);
         }
         // x̂ʲ − x̂⁻ of all modes
         "combined-spread-about-prediction" => {
-            *entry = |_, _, now| {
+            *entry = |_, _, now, _| {
                 let mean = if now.step == 0 {
                     &now.combined.mean
                 } else {
@@ -109,12 +111,12 @@ fn of_covariance<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut 
 }
 
 /// The predicted estimates; at step 0 the initial ones.
-fn shown<T, const N: usize, const M: usize>(now: &Step<T, N, M>) -> &[crate::gaussian::Gaussian<T, N>] {
+fn shown<T: Real>(now: &Step<T, Dyn, Dyn>) -> &[crate::gaussian::Gaussian<T, Dyn>] {
     if now.step == 0 { &now.updated } else { &now.predicted }
 }
 
 /// 1/r for each of r modes.
-fn equal<T: Real, const N: usize, const M: usize>(now: &Step<T, N, M>) -> Vec<T> {
+fn equal<T: Real>(now: &Step<T, Dyn, Dyn>) -> Vec<T> {
     let modes = now.updated.len();
     vec![T::one() / super::number::<T>(modes); modes]
 }

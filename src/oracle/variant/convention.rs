@@ -3,20 +3,20 @@
 //! After this file the reader knows each value of `conventions` that a program may declare. None of them is wrong.
 
 use super::super::setup::Setup;
-use super::{draws_points, number, square_root, weights};
+use super::{drawn, draws_points, number, square_root, weights};
 use crate::gaussian::log_density;
-use crate::imm::{Equations, Problem, Step};
+use crate::imm::{Equations, Interaction, Problem, Step};
 use crate::matrix::ldl;
 use crate::number::Real;
-use nalgebra::SVector;
+use nalgebra::{DVector, Dyn};
 
 /// Applies a convention; whether it is one.
-pub(super) fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+pub(super) fn apply<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     of_any_filter(id, setup) || of_sustika2015(id, setup)
 }
 
 /// What sustika2015 leaves open: modes of unequal dimensions, and where R^c is evaluated.
-fn of_sustika2015<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_sustika2015<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let equations = &mut setup.equations;
     match id {
         // P = Σᵢ wᵢ Eᵢ [ Pⁱ + (x̂ⁱ − x̂)(x̂ⁱ − x̂)ᵀ ] Eᵢ
@@ -25,9 +25,7 @@ fn of_sustika2015<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut
         "unequal-dimensions-unbiased" => *equations = equations.clone().with_unbiased_mixing(),
         // R^c at the range and bearing of the combined prediction
         "converted-covariance-at-prediction" => {
-            if equations.converts {
-                equations.converted_covariance = Equations::converted_at_prediction().converted_covariance;
-            }
+            *equations = equations.clone().with_conversion_at_prediction();
         }
         _ => return false,
     }
@@ -35,32 +33,34 @@ fn of_sustika2015<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut
 }
 
 /// The square root, angles, the first step and the constant of the likelihood.
-fn of_any_filter<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_any_filter<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let points = draws_points(setup);
     let equations = &mut setup.equations;
     match id {
         // P = U Uᵀ
         "square-root-upper" => {
             if points {
-                equations.mixed_square_root = |_, _, now, j| square_root::upper(&now.mixed[j].covariance);
-                equations.predicted_square_root = |_, _, now, j| square_root::upper(&now.predicted[j].covariance);
+                equations.mixed_points = |problem, _, now, j| drawn(problem, j, &now.mixed[j], square_root::upper);
+                equations.predicted_points =
+                    |problem, _, now, j| drawn(problem, j, &now.predicted[j], square_root::upper);
             }
         }
         // P = S S
         "square-root-symmetric" => {
             if points {
-                equations.mixed_square_root = |_, _, now, j| square_root::symmetric(&now.mixed[j].covariance);
-                equations.predicted_square_root = |_, _, now, j| square_root::symmetric(&now.predicted[j].covariance);
+                equations.mixed_points = |problem, _, now, j| drawn(problem, j, &now.mixed[j], square_root::symmetric);
+                equations.predicted_points =
+                    |problem, _, now, j| drawn(problem, j, &now.predicted[j], square_root::symmetric);
             }
         }
         // θ̂ = atan2(Σₛ wₛ sin θₛ, Σₛ wₛ cos θₛ)
         "angle-mean-vector" => {
             if points {
                 equations.predicted_measurement = |problem, previous, now, j| {
-                    let usual = (Equations::standard(problem).predicted_measurement)(problem, previous, now, j);
-                    SVector::from_fn(|row, _| {
-                        if problem.measurement.is_angle(row) {
-                            mean_direction(weights(problem).0, &now.measured_points[j], row)
+                    let usual = (Equations::standard().predicted_measurement)(problem, previous, now, j);
+                    DVector::from_fn(usual.len(), |row, _| {
+                        if problem.sensor.is_angle(row) {
+                            mean_direction(weights(problem, j).0, &now.measured_points[j], row)
                         } else {
                             usual[row].clone()
                         }
@@ -74,10 +74,10 @@ fn of_any_filter<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut 
                 if now.step == 1 {
                     return previous.mode_probabilities[j].clone();
                 }
-                (Equations::standard(problem).predicted_mode_probability)(problem, previous, now, j)
+                (Equations::standard().predicted_mode_probability)(problem, previous, now, j)
             };
-            if equations.mixes {
-                equations.mixing_probability = mixed_from_the_second_step;
+            if setup.problem.interaction == Interaction::Imm {
+                equations.mixing_probabilities = mixed_from_the_second_step;
             }
         }
         // ln L + (m/2) ln 2π
@@ -85,7 +85,7 @@ fn of_any_filter<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut 
             equations.log_likelihood = |_, _, now, j| {
                 let full = log_density(&now.innovations[j], &ldl(&now.innovation_covariances[j]));
                 let two_pi = T::pi() * T::integer(2);
-                full + number::<T>(M) * T::ln(&two_pi) / T::integer(2)
+                full + number::<T>(now.innovations[j].len()) * T::ln(&two_pi) / T::integer(2)
             }
         }
         _ => return false,
@@ -94,22 +94,21 @@ fn of_any_filter<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut 
 }
 
 /// μᵢ∣ⱼ, at step 1 of modes that keep what they have.
-fn mixed_from_the_second_step<T: Real, const N: usize, const M: usize>(
-    problem: &Problem<T, N, M>,
-    previous: &Step<T, N, M>,
-    now: &Step<T, N, M>,
+fn mixed_from_the_second_step<T: Real>(
+    problem: &Problem<T, Dyn, Dyn>,
+    previous: &Step<T, Dyn, Dyn>,
+    now: &Step<T, Dyn, Dyn>,
     j: usize,
-    i: usize,
-) -> T {
-    match (now.step, i == j) {
-        (1, true) => T::one(),
-        (1, false) => T::zero(),
-        _ => (Equations::standard(problem).mixing_probability)(problem, previous, now, j, i),
+) -> Vec<T> {
+    if now.step > 1 {
+        return (Equations::standard().mixing_probabilities)(problem, previous, now, j);
     }
+    let own = |i| if i == j { T::one() } else { T::zero() };
+    (0..problem.modes.len()).map(own).collect()
 }
 
 /// The direction of the weighted sum of unit vectors.
-fn mean_direction<T: Real, const M: usize>(weights: &[T], values: &[SVector<T, M>], row: usize) -> T {
+fn mean_direction<T: Real>(weights: &[T], values: &[DVector<T>], row: usize) -> T {
     let (mut y, mut x) = (T::zero(), T::zero());
     for (weight, value) in weights.iter().zip(values) {
         y += weight.clone() * T::sin(&value[row]);

@@ -4,19 +4,22 @@
 
 use super::super::setup::Setup;
 use crate::filter::fixed_gain::FixedGain;
-use crate::imm::Equations;
+use crate::filter::{Filter, Update};
+use crate::imm::Interaction;
 use crate::number::Real;
+use nalgebra::Dyn;
 
-/// Applies a variant of filters with fixed gains; whether it is one. On other filters they change nothing.
-pub(super) fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
-    of_given(id, setup.problem.fixed_gains.as_deref_mut().unwrap_or_default()) || of_reading(id, setup)
+/// Applies a variant of what is given; whether it is one.
+pub(super) fn apply<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
+    of_given(id, setup) || of_reading(id, setup)
 }
 
-/// What is given for each mode; nothing where gains are computed.
-fn of_given<T: Real, const N: usize, const M: usize>(id: &str, given: &mut [FixedGain<T, N, M>]) -> bool {
+/// Gains and innovation covariances.
+fn of_given<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
+    let mut given: Vec<_> = setup.problem.filters.iter_mut().filter_map(given_of).collect();
     match id {
         // Kʲ⁺¹, and that of the first mode in the last
-        "gain-of-the-next-mode" => rotate(given, |mode| &mut mode.gain),
+        "gain-of-the-next-mode" => rotate(&mut given, |mode| &mut mode.gain),
         "gain-of-the-first-mode" => {
             if let Some((first, others)) = given.split_first_mut() {
                 for mode in others {
@@ -25,31 +28,39 @@ fn of_given<T: Real, const N: usize, const M: usize>(id: &str, given: &mut [Fixe
             }
         }
         // Sʲ⁺¹
-        "innovation-covariance-of-the-next-mode" => rotate(given, |mode| &mut mode.innovation_covariance),
+        "innovation-covariance-of-the-next-mode" => rotate(&mut given, |mode| &mut mode.innovation_covariance),
         _ => return false,
     }
     true
 }
 
-/// The readings of derbez2000's update.
-fn of_reading<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
-    let (is_fixed, mixes) = (setup.problem.fixed_gains.is_some(), setup.equations.mixes);
-    let entry = &mut setup.equations.mixing_probability;
+/// What a filter is given, if it is.
+fn given_of<T: Real>(filter: &mut Filter<T, Dyn, Dyn>) -> Option<&mut FixedGain<T, Dyn, Dyn>> {
+    match &mut filter.update {
+        Update::Given(given) => Some(given),
+        _ => None,
+    }
+}
+
+/// The two readings of filters with given gains.
+fn of_reading<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
+    let is_given = !setup.problem.has_covariances();
+    let interaction = &mut setup.problem.interaction;
     match id {
         // μᵢ∣ⱼ = 1 for i = j and 0 else, where estimates are mixed
-        "unmixed-for-mixed" if is_fixed && mixes => *entry = Equations::fixed_gain_unmixed().mixing_probability,
+        "unmixed-for-mixed" if is_given => *interaction = Interaction::Unmixed,
         // μᵢ∣ⱼ = pᵢⱼ μᵢ / cⱼ, where each mode starts from its own estimate
-        "mixed-for-unmixed" if is_fixed && !mixes => *entry = Equations::fixed_gain().mixing_probability,
+        "mixed-for-unmixed" if is_given => *interaction = Interaction::Imm,
         "unmixed-for-mixed" | "mixed-for-unmixed" => {}
         _ => return false,
     }
     true
 }
 
-/// Mode j has a part of mode j + 1, the last that of the first.
-fn rotate<T, V: Clone, const N: usize, const M: usize>(
-    given: &mut [FixedGain<T, N, M>],
-    part: fn(&mut FixedGain<T, N, M>) -> &mut V,
+/// Gives each mode a part of the next one.
+fn rotate<T: Real, V: Clone>(
+    given: &mut [&mut FixedGain<T, Dyn, Dyn>],
+    part: fn(&mut FixedGain<T, Dyn, Dyn>) -> &mut V,
 ) {
     let mut parts: Vec<V> = given.iter_mut().map(|mode| part(mode).clone()).collect();
     parts.rotate_left(given.len().min(1));

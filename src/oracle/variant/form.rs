@@ -10,10 +10,10 @@ use crate::imm::Equations;
 use crate::imm::{Problem, Step};
 use crate::matrix::{check_positive_definite, cholesky, ldl, mirrored, solve};
 use crate::number::Real;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{DMatrix, DVector, Dyn};
 
 /// Applies a form; whether it is one.
-pub(super) fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+pub(super) fn apply<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     of_mean(id, setup)
         || of_update(id, setup)
         || of_inverse(id, setup)
@@ -23,15 +23,15 @@ pub(super) fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &m
 }
 
 /// The update of the mean.
-fn of_mean<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_mean<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     if id != "information-update-of-the-mean" {
         return false;
     }
     // x̂ = P (P⁻⁻¹ x̂⁻ + Hᵀ R⁻¹ z), P = (P⁻⁻¹ + Hᵀ R⁻¹ H)⁻¹
     if has_information(setup) {
         setup.equations.updated_mean = |problem, _, now, j| {
-            let h = problem.measurement.matrix();
-            let of_measurement = h.transpose() * inverse(noise(problem, now));
+            let h = problem.h().into_owned();
+            let of_measurement = h.transpose() * inverse(noise(problem, now, j));
             let before = inverse(&now.predicted[j].covariance);
             let mean = &now.predicted[j].mean;
             let measurement = &now.innovations[j] + &h * mean;
@@ -42,7 +42,7 @@ fn of_mean<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<
 }
 
 /// The updated covariance.
-fn of_update<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_update<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let (points, has_information) = (draws_points(setup), has_information(setup));
     let entry = &mut setup.equations.updated_covariance;
     match id {
@@ -57,7 +57,7 @@ fn of_update<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setu
             *entry = |problem, _, now, j| {
                 let w = &now.gains[j];
                 let rest = rest(problem, now, j);
-                let noise = w * noise(problem, now) * w.transpose();
+                let noise = w * noise(problem, now, j) * w.transpose();
                 &rest * &now.predicted[j].covariance * rest.transpose() + noise
             }
         }
@@ -75,8 +75,8 @@ fn of_update<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setu
         "information-update" => {
             if has_information {
                 *entry = |problem, _, now, j| {
-                    let h = problem.measurement.matrix();
-                    let information = h.transpose() * solve(&ldl(noise(problem, now)), &h);
+                    let h = problem.h();
+                    let information = h.transpose() * solve(&ldl(noise(problem, now, j)), &h);
                     inverse(&(inverse(&now.predicted[j].covariance) + information))
                 }
             }
@@ -95,13 +95,16 @@ fn of_update<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setu
 }
 
 /// Whether there is an information form: no points, and no entry of the state that a mode knows exactly, whose covariance has no inverse.
-fn has_information<T: Real, const N: usize, const M: usize>(setup: &Setup<T, N, M>) -> bool {
+fn has_information<T: Real>(setup: &Setup<T>) -> bool {
     let modes = &setup.problem.modes;
-    !draws_points(setup) && !modes.iter().any(|mode| (0..N).any(|entry| mode.lacks(entry)))
+    !draws_points(setup)
+        && !modes
+            .iter()
+            .any(|mode| (0..setup.problem.n().0).any(|entry| mode.lacks(entry)))
 }
 
 /// The gain and the likelihood, by an inverse or another factor.
-fn of_inverse<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_inverse<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let equations = &mut setup.equations;
     match id {
         // C · S⁻¹ and νᵀ · S⁻¹ · ν
@@ -137,7 +140,7 @@ fn of_inverse<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Set
 }
 
 /// Moments of points and mixtures.
-fn of_moments<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_moments<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let points = draws_points(setup);
     let is_raw = points && is_linear(&setup.problem) && sums_to_one(&setup.problem);
     let equations = &mut setup.equations;
@@ -145,10 +148,7 @@ fn of_moments<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Set
         // zhu2016 (24) completed, (45), (48)
         "raw-moments" => {
             if is_raw {
-                let raw = Equations::raw_cubature();
-                equations.predicted_covariance = raw.predicted_covariance;
-                equations.innovation_covariance = raw.innovation_covariance;
-                equations.cross_covariance = raw.cross_covariance;
+                *equations = equations.clone().with_raw_moments();
             }
         }
         // Σᵢ wᵢ (Pⁱ + x̂ⁱ x̂ⁱᵀ) − x̂ x̂ᵀ
@@ -156,7 +156,7 @@ fn of_moments<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Set
             equations.mixed_covariance =
                 |_, previous, now, j| raw_mixture(&now.mixing_probabilities[j], &previous.updated, &now.mixed[j].mean);
             equations.combined_covariance =
-                |_, _, now| raw_mixture(&now.mode_probabilities, &now.updated, &now.combined.mean);
+                |_, _, now, _| raw_mixture(&now.mode_probabilities, &now.updated, &now.combined.mean);
         }
         // the last term first
         "summation-reversed" => {
@@ -169,8 +169,8 @@ fn of_moments<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Set
                 mixture_covariance(&weights, &estimates, &now.mixed[j].mean)
             };
             equations.combined_mean =
-                |_, _, now| mixture_mean(&reversed(&now.mode_probabilities), &reversed(&now.updated));
-            equations.combined_covariance = |_, _, now| {
+                |_, _, now, _| mixture_mean(&reversed(&now.mode_probabilities), &reversed(&now.updated));
+            equations.combined_covariance = |_, _, now, _| {
                 let (weights, estimates) = (reversed(&now.mode_probabilities), reversed(&now.updated));
                 mixture_covariance(&weights, &estimates, &now.combined.mean)
             };
@@ -184,7 +184,7 @@ fn of_moments<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Set
 }
 
 /// The prediction.
-fn of_prediction<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_prediction<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let points = draws_points(setup);
     let equations = &mut setup.equations;
     match id {
@@ -193,18 +193,17 @@ fn of_prediction<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut 
             if !points {
                 equations.predicted_covariance = |problem, _, now, j| {
                     let mode = &problem.modes[j];
-                    let f = &mode.transition;
+                    let f = &*mode.motion.matrix();
                     f * (&now.mixed[j].covariance * f.transpose()) + &mode.noise
                 }
             }
         }
         // the moments of linear motion without points
         "prediction-by-matrices" => {
-            equations.predicted_mean =
-                |problem, _, now, j| kalman::predicted_mean(&problem.modes[j].transition, &now.mixed[j].mean);
+            equations.predicted_mean = |problem, _, now, j| problem.modes[j].motion.of(&now.mixed[j].mean);
             equations.predicted_covariance = |problem, _, now, j| {
                 let mode = &problem.modes[j];
-                kalman::predicted_covariance(&mode.transition, &now.mixed[j].covariance, &mode.noise)
+                kalman::predicted_covariance(&mode.motion.matrix(), &now.mixed[j].covariance, &mode.noise)
             };
         }
         _ => return false,
@@ -213,7 +212,7 @@ fn of_prediction<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut 
 }
 
 /// The mode probabilities.
-fn of_probability<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_probability<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let equations = &mut setup.equations;
     match id {
         // μⱼ = exp( ln Lⱼ + ln cⱼ − ln Σᵢ exp(ln Lᵢ + ln cᵢ) )
@@ -233,34 +232,30 @@ fn of_probability<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut
 }
 
 /// The sums over points in reversed order.
-fn reverse_points<T: Real, const N: usize, const M: usize>(equations: &mut Equations<T, N, M>) {
+fn reverse_points<T: Real>(equations: &mut Equations<T, Dyn, Dyn>) {
     equations.predicted_mean = |problem, _, now, j| {
-        cubature::weighted_mean(&reversed(weights(problem).0), &reversed(&now.propagated_points[j]))
+        cubature::weighted_mean(&reversed(weights(problem, j).0), &reversed(&now.propagated_points[j]))
     };
     equations.predicted_covariance = |problem, _, now, j| {
-        let (weights, points) = (reversed(weights(problem).1), reversed(&now.propagated_points[j]));
+        let (weights, points) = (reversed(weights(problem, j).1), reversed(&now.propagated_points[j]));
         cubature::weighted_covariance(&weights, &points, &now.predicted[j].mean, &problem.modes[j].noise)
     };
 }
 
 /// I − W H.
-fn rest<T: Real, const N: usize, const M: usize>(
-    problem: &Problem<T, N, M>,
-    now: &Step<T, N, M>,
-    j: usize,
-) -> SMatrix<T, N, N> {
-    SMatrix::identity() - &now.gains[j] * problem.measurement.matrix()
+fn rest<T: Real>(problem: &Problem<T, Dyn, Dyn>, now: &Step<T, Dyn, Dyn>, j: usize) -> DMatrix<T> {
+    identity(problem.n().0) - &now.gains[j] * &*problem.h()
 }
 
 /// The inverse of a positive definite matrix, formed.
-fn inverse<T: Real, const D: usize>(matrix: &SMatrix<T, D, D>) -> SMatrix<T, D, D> {
-    mirrored(solve(&ldl(matrix), &SMatrix::<T, D, D>::identity()))
+fn inverse<T: Real>(matrix: &DMatrix<T>) -> DMatrix<T> {
+    mirrored(solve(&ldl(matrix), &identity(matrix.nrows())))
 }
 
 /// The solution y of L y = v.
-fn forward<T: Real, const D: usize>(lower: &SMatrix<T, D, D>, vector: &SVector<T, D>) -> SVector<T, D> {
+fn forward<T: Real>(lower: &DMatrix<T>, vector: &DVector<T>) -> DVector<T> {
     let mut solution = vector.clone();
-    for i in 0..D {
+    for i in 0..vector.len() {
         for k in 0..i {
             let known = lower[(i, k)].clone() * solution[k].clone();
             solution[i] -= known;
@@ -271,27 +266,28 @@ fn forward<T: Real, const D: usize>(lower: &SMatrix<T, D, D>, vector: &SVector<T
 }
 
 /// Σᵢ ln(2π dᵢ)
-fn log_determinant_of_two_pi<T: Real, const M: usize>(pivots: &SVector<T, M>) -> T {
+fn log_determinant_of_two_pi<T: Real>(pivots: &DVector<T>) -> T {
     let two_pi = T::pi() * T::integer(2);
     let logarithms = pivots.iter().map(|pivot| T::ln(&(two_pi.clone() * pivot.clone())));
     logarithms.fold(T::zero(), |sum, logarithm| sum + logarithm)
 }
 
 /// Σᵢ wᵢ (Pⁱ + x̂ⁱ x̂ⁱᵀ) − x̂ x̂ᵀ
-fn raw_mixture<T: Real, const N: usize>(
-    weights: &[T],
-    components: &[Gaussian<T, N>],
-    mean: &SVector<T, N>,
-) -> SMatrix<T, N, N> {
-    mixture_covariance(weights, components, &SVector::zeros()) - mean * mean.transpose()
+fn raw_mixture<T: Real>(weights: &[T], components: &[Gaussian<T, Dyn>], mean: &DVector<T>) -> DMatrix<T> {
+    mixture_covariance(weights, components, &DVector::zeros(mean.len())) - mean * mean.transpose()
 }
 
 /// Whether the weights for covariances sum to one, but for rounding.
-fn sums_to_one<T: Real, const N: usize, const M: usize>(problem: &Problem<T, N, M>) -> bool {
-    let excess: T = sum_of_covariance_weights::<T, N, M>(problem) - T::one();
+fn sums_to_one<T: Real>(problem: &Problem<T, Dyn, Dyn>) -> bool {
+    let excess: T = sum_of_covariance_weights::<T>(problem, 0) - T::one();
     excess.clone() * excess < T::ratio(1, 1_000_000_000_000)
 }
 
 fn reversed<V: Clone>(values: &[V]) -> Vec<V> {
     values.iter().rev().cloned().collect()
+}
+
+/// The unit matrix.
+fn identity<T: Real>(n: usize) -> DMatrix<T> {
+    DMatrix::identity(n, n)
 }

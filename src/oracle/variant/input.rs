@@ -5,29 +5,32 @@
 use super::super::setup::Setup;
 use super::{diagonal, number};
 use crate::imm::Problem;
-use crate::model::{Measurement, PolarComponent};
+use crate::model::{PolarComponent, Sensor};
 use crate::number::Real;
-use nalgebra::SMatrix;
+use nalgebra::{DMatrix, DVector, Dyn};
 
 /// Applies a variant of the problem; whether it is one.
-pub(super) fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+pub(super) fn apply<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     of_matrices(id, setup) || of_modes(id, setup) || of_initial(id, setup) || of_measurements(id, setup)
 }
 
 /// The matrices.
-fn of_matrices<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_matrices<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let problem = &mut setup.problem;
     match id {
         "motion-by-columns" => {
             for mode in &mut problem.modes {
-                mode.transition = mode.transition.transpose();
+                if let Some(f) = mode.motion.matrix_mut() {
+                    *f = f.transpose();
+                }
             }
         }
         // the numbers of H, row after row, taken for its columns
         "measurement-matrix-by-columns" => {
-            if let Measurement::Linear(h) = &mut problem.measurement {
+            if let Sensor::Linear(h) = &mut problem.sensor {
                 let by_rows = h.transpose();
-                *h = SMatrix::from_fn(|row, column| by_rows.as_slice()[column * M + row].clone());
+                let (m, n) = h.shape();
+                *h = DMatrix::from_fn(m, n, |row, column| by_rows.as_slice()[column * m + row].clone());
             }
         }
         "process-noise-of-variances-alone" => {
@@ -50,11 +53,10 @@ fn of_matrices<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Se
         }
         // the bearing's σ read as degrees
         "bearing-noise-in-degrees" => {
-            let is_angle: Vec<bool> = (0..M).map(|row| is_bearing(problem, row)).collect();
+            let is_angle: Vec<bool> = (0..problem.m().0).map(|row| is_bearing(problem, row)).collect();
             let unit = |row: usize| if is_angle[row] { degree() } else { T::one() };
             let noise = &problem.measurement_noise;
-            problem.measurement_noise =
-                SMatrix::from_fn(|row, column| noise[(row, column)].clone() * unit(row) * unit(column));
+            problem.measurement_noise = noise.map_with_location(|row, column, entry| entry * unit(row) * unit(column));
         }
         _ => return false,
     }
@@ -62,7 +64,7 @@ fn of_matrices<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Se
 }
 
 /// The order of the modes.
-fn of_modes<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_modes<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     match id {
         // F and Q of the last mode first
         "modes-reversed" => setup.problem.modes.reverse(),
@@ -74,7 +76,7 @@ fn of_modes<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup
 }
 
 /// The initial estimate.
-fn of_initial<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_initial<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let initial = &mut setup.initial;
     match id {
         "initial-probabilities-equal" => {
@@ -100,7 +102,7 @@ fn of_initial<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Set
         }
         "initial-covariance-ignored" => {
             for estimate in &mut initial.modes {
-                estimate.covariance = SMatrix::identity();
+                estimate.covariance.fill_with_identity();
             }
         }
         "initial-mean-ignored" => {
@@ -114,7 +116,7 @@ fn of_initial<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Set
 }
 
 /// The measurements.
-fn of_measurements<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_measurements<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let measurements = &mut setup.measurements;
     match id {
         // z(k+1) at step k; the last step keeps its own
@@ -131,13 +133,14 @@ fn of_measurements<T: Real, const N: usize, const M: usize>(id: &str, setup: &mu
         }
         "measurement-entries-reversed" => {
             for z in measurements.iter_mut().flatten() {
-                *z = nalgebra::SVector::from_fn(|row, _| z[M - 1 - row].clone());
+                let m = z.len();
+                *z = DVector::from_fn(m, |row, _| z[m - 1 - row].clone());
             }
         }
         // θ π / 180 of a bearing that is in radians already
         "degrees-for-radians" => {
             for z in measurements.iter_mut().flatten() {
-                for row in (0..M).filter(|&row| is_bearing(&setup.problem, row)) {
+                for row in (0..z.len()).filter(|&row| is_bearing(&setup.problem, row)) {
                     z[row] *= degree();
                 }
             }
@@ -148,8 +151,8 @@ fn of_measurements<T: Real, const N: usize, const M: usize>(id: &str, setup: &mu
 }
 
 /// Whether a component of the measurement is a bearing.
-fn is_bearing<T: Real, const N: usize, const M: usize>(problem: &Problem<T, N, M>, row: usize) -> bool {
-    problem.measurement.reports(row) == Some(PolarComponent::Bearing)
+fn is_bearing<T: Real>(problem: &Problem<T, Dyn, Dyn>, row: usize) -> bool {
+    problem.sensor.reports(row) == Some(PolarComponent::Bearing)
 }
 
 /// A degree in radians.

@@ -3,22 +3,22 @@
 //! After this file the reader knows how the Gaussian density of a residual is miscalculated, and of which residual.
 
 use super::super::setup::Setup;
-use super::{diagonal, draws_points, noise, number, used};
+use super::{diagonal, draws_points, noise, number, seen, used};
 use crate::filter::kalman;
 use crate::gaussian::log_density;
 use crate::imm::printed::{log_density_21, log_density_57};
 use crate::imm::{Problem, Step};
 use crate::matrix::{ldl, log_determinant, quadratic_form};
 use crate::number::Real;
-use nalgebra::SVector;
+use nalgebra::{DVector, Dyn};
 
 /// Applies a variant of the log-likelihood; whether it is one.
-pub(super) fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+pub(super) fn apply<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     of_density(id, setup) || of_updated_arguments(id, setup) || of_other_arguments(id, setup)
 }
 
 /// The density.
-fn of_density<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_density<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let entry = &mut setup.equations.log_likelihood;
     match id {
         // liu2017 (21) as printed: −½ νᵀ S⁻¹ ν − (m/2) ln|2πS|
@@ -53,7 +53,7 @@ fn of_density<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Set
 }
 
 /// The residual and the covariance after the update, given to the density.
-fn of_updated_arguments<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_updated_arguments<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let points = draws_points(setup);
     let entry = &mut setup.equations.log_likelihood;
     match id {
@@ -68,8 +68,8 @@ fn of_updated_arguments<T: Real, const N: usize, const M: usize>(id: &str, setup
         "likelihood-of-updated-covariance" => {
             if !points {
                 *entry = |problem, _, now, j| {
-                    let (h, covariance) = (problem.measurement.matrix(), &now.updated[j].covariance);
-                    let s = kalman::innovation_covariance(&h, covariance, noise(problem, now));
+                    let (h, covariance) = (problem.h(), &now.updated[j].covariance);
+                    let s = kalman::innovation_covariance(&h, covariance, noise(problem, now, j));
                     log_density(&now.innovations[j], &ldl(&s))
                 }
             }
@@ -78,8 +78,8 @@ fn of_updated_arguments<T: Real, const N: usize, const M: usize>(id: &str, setup
         "likelihood-of-updated-estimate" => {
             if !points {
                 *entry = |problem, _, now, j| {
-                    let (h, covariance) = (problem.measurement.matrix(), &now.updated[j].covariance);
-                    let s = kalman::innovation_covariance(&h, covariance, noise(problem, now));
+                    let (h, covariance) = (problem.h(), &now.updated[j].covariance);
+                    let s = kalman::innovation_covariance(&h, covariance, noise(problem, now, j));
                     log_density(&updated_residual(problem, now, j), &ldl(&s))
                 }
             }
@@ -90,12 +90,13 @@ fn of_updated_arguments<T: Real, const N: usize, const M: usize>(id: &str, setup
 }
 
 /// Another covariance, or a part of it, given to the density.
-fn of_other_arguments<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_other_arguments<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
+    let is_scalar = setup.problem.m().0 == 1;
     let entry = &mut setup.equations.log_likelihood;
     match id {
         // S = R
         "likelihood-of-measurement-noise" => {
-            *entry = |problem, _, now, j| log_density(&now.innovations[j], &ldl(noise(problem, now)));
+            *entry = |problem, _, now, j| log_density(&now.innovations[j], &ldl(noise(problem, now, j)));
         }
         // S without its covariances
         "likelihood-of-variances-alone" => {
@@ -106,7 +107,7 @@ fn of_other_arguments<T: Real, const N: usize, const M: usize>(id: &str, setup: 
         }
         // N(ν; 0, S²): the variance where a function asks for a standard deviation
         "likelihood-variance-as-standard-deviation" => {
-            if M == 1 {
+            if is_scalar {
                 *entry = |_, _, now, j| {
                     let s = &now.innovation_covariances[j];
                     log_density(&now.innovations[j], &ldl(&(s * s)))
@@ -127,22 +128,23 @@ fn of_other_arguments<T: Real, const N: usize, const M: usize>(id: &str, setup: 
 }
 
 /// −a νᵀ S⁻¹ ν − b ln|S| − c m ln 2π, which is the density for a = b = c = ½.
-fn weighed<T: Real, const N: usize, const M: usize>(now: &Step<T, N, M>, j: usize, factors: [(i64, i64); 3]) -> T {
+fn weighed<T: Real>(now: &Step<T, Dyn, Dyn>, j: usize, factors: [(i64, i64); 3]) -> T {
     let s = ldl(&now.innovation_covariances[j]);
     let [a, b, c] = factors.map(|(numerator, denominator)| T::ratio(numerator, denominator));
     let two_pi = T::pi() * T::integer(2);
-    -(quadratic_form(&s, &now.innovations[j]) * a + log_determinant(&s) * b + number::<T>(M) * T::ln(&two_pi) * c)
+    -(quadratic_form(&s, &now.innovations[j]) * a
+        + log_determinant(&s) * b
+        + number::<T>(s.diagonal.len()) * T::ln(&two_pi) * c)
 }
 
 /// z − h(x̂) with the updated mean.
-fn updated_residual<T: Real, const N: usize, const M: usize>(
-    problem: &Problem<T, N, M>,
-    now: &Step<T, N, M>,
-    j: usize,
-) -> SVector<T, M> {
-    let undecided = || SVector::from_fn(|_, _| T::undecided());
-    let z = used(problem, now).cloned().unwrap_or_else(undecided);
-    problem
-        .measurement
-        .difference(&z, &problem.measurement.of(&now.updated[j].mean))
+fn updated_residual<T: Real>(problem: &Problem<T, Dyn, Dyn>, now: &Step<T, Dyn, Dyn>, j: usize) -> DVector<T> {
+    let Some(z) = &now.measurement else {
+        return now.innovations[j].clone();
+    };
+    let seen = seen(problem, &now.updated[j].mean, j);
+    match problem.conversion() {
+        Some(_) => used(problem, z, now, j) - seen,
+        None => problem.sensor.difference(z, &seen),
+    }
 }

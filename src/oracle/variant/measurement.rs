@@ -3,39 +3,41 @@
 //! After this file the reader knows how R is lost or counted twice, and which points and means are taken for others.
 
 use super::super::setup::Setup;
-use super::{draws_points, noise, sum_of_covariance_weights, used, weights};
+use super::{draws_points, noise, seen, sum_of_covariance_weights, used, weights};
 use crate::filter::{cubature, kalman};
 use crate::imm::{Equations, Problem, Step};
 use crate::number::Real;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{DMatrix, Dyn};
 
 /// Applies a variant of the measurement; whether it is one.
-pub(super) fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+pub(super) fn apply<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     of_predicted_measurement(id, setup) || of_innovation_covariance(id, setup) || of_cross_covariance(id, setup)
 }
 
 /// The predicted measurement and the innovation.
-fn of_predicted_measurement<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_predicted_measurement<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let equations = &mut setup.equations;
     match id {
         // ẑ = h(x̂⁻)
         "measurement-of-the-mean" => {
-            equations.predicted_measurement = |problem, _, now, j| problem.measurement.of(&now.predicted[j].mean);
+            equations.predicted_measurement = |problem, _, now, j| seen(problem, &now.predicted[j].mean, j);
         }
         // ẑ = h(x̂⁰ʲ)
         "measurement-of-the-mixed-mean" => {
-            equations.predicted_measurement = |problem, _, now, j| problem.measurement.of(&now.mixed[j].mean);
+            equations.predicted_measurement = |problem, _, now, j| seen(problem, &now.mixed[j].mean, j);
         }
         // ẑ = h(x̂⁻ of all modes)
         "measurement-of-the-combined-prediction" => {
-            equations.predicted_measurement =
-                |problem, _, now, _| problem.measurement.of(&now.combined_prediction.mean);
+            equations.predicted_measurement = |problem, _, now, j| seen(problem, &now.combined_prediction.mean, j);
         }
         // ν = ẑ − z
         "innovation-reversed" => {
-            equations.innovation = |problem, _, now, j| match used(problem, now) {
-                Some(z) => problem.measurement.difference(&now.predicted_measurements[j], z),
-                None => SVector::from_fn(|_, _| T::undecided()),
+            equations.innovation = |problem, z, now, j| {
+                let (predicted, z) = (&now.predicted_measurements[j], used(problem, z, now, j));
+                match problem.conversion() {
+                    Some(_) => predicted - z,
+                    None => problem.sensor.difference(predicted, z),
+                }
             }
         }
         _ => return false,
@@ -44,17 +46,19 @@ fn of_predicted_measurement<T: Real, const N: usize, const M: usize>(id: &str, s
 }
 
 /// The innovation covariance.
-fn of_innovation_covariance<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_innovation_covariance<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let points = draws_points(setup);
     let equations = &mut setup.equations;
     match id {
         "measurement-noise-omitted" => {
-            equations.innovation_covariance =
-                |problem, previous, now, j| with_noise(problem, previous, now, j, SMatrix::zeros());
+            equations.innovation_covariance = |problem, previous, now, j| {
+                let none = noise(problem, now, j) * T::zero();
+                with_noise(problem, previous, now, j, none)
+            }
         }
         "measurement-noise-doubled" => {
             equations.innovation_covariance = |problem, previous, now, j| {
-                let noise = noise(problem, now) + noise(problem, now);
+                let noise = noise(problem, now, j) + noise(problem, now, j);
                 with_noise(problem, previous, now, j, noise)
             }
         }
@@ -62,7 +66,7 @@ fn of_innovation_covariance<T: Real, const N: usize, const M: usize>(id: &str, s
         "measurement-noise-inside-the-sum" => {
             if points {
                 equations.innovation_covariance = |problem, previous, now, j| {
-                    let noise = noise(problem, now) * sum_of_covariance_weights(problem);
+                    let noise = noise(problem, now, j) * sum_of_covariance_weights(problem, j);
                     with_noise(problem, previous, now, j, noise)
                 }
             }
@@ -71,12 +75,11 @@ fn of_innovation_covariance<T: Real, const N: usize, const M: usize>(id: &str, s
         "measured-before-the-prediction" => {
             if !points {
                 equations.innovation_covariance = |problem, _, now, j| {
-                    let h = problem.measurement.matrix();
-                    kalman::innovation_covariance(&h, &now.mixed[j].covariance, noise(problem, now))
+                    let h = problem.h();
+                    kalman::innovation_covariance(&h, &now.mixed[j].covariance, noise(problem, now, j))
                 };
-                equations.cross_covariance = |problem, _, now, j| {
-                    kalman::cross_covariance(&now.mixed[j].covariance, &problem.measurement.matrix())
-                };
+                equations.cross_covariance =
+                    |problem, _, now, j| kalman::cross_covariance(&now.mixed[j].covariance, &problem.h());
             }
         }
         _ => return false,
@@ -85,7 +88,7 @@ fn of_innovation_covariance<T: Real, const N: usize, const M: usize>(id: &str, s
 }
 
 /// The cross-covariance.
-fn of_cross_covariance<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_cross_covariance<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let points = draws_points(setup);
     let equations = &mut setup.equations;
     match id {
@@ -94,8 +97,8 @@ fn of_cross_covariance<T: Real, const N: usize, const M: usize>(id: &str, setup:
             if points {
                 equations.cross_covariance = |problem, _, now, j| {
                     cubature::cross_covariance(
-                        &problem.measurement,
-                        weights(problem).1,
+                        &problem.sensor,
+                        weights(problem, j).1,
                         &now.propagated_points[j],
                         &now.predicted[j].mean,
                         &now.measured_points[j],
@@ -107,9 +110,8 @@ fn of_cross_covariance<T: Real, const N: usize, const M: usize>(id: &str, setup:
         // C = P⁰ʲ Hᵀ
         "cross-covariance-of-mixed-covariance" => {
             if !points {
-                equations.cross_covariance = |problem, _, now, j| {
-                    kalman::cross_covariance(&now.mixed[j].covariance, &problem.measurement.matrix())
-                }
+                equations.cross_covariance =
+                    |problem, _, now, j| kalman::cross_covariance(&now.mixed[j].covariance, &problem.h());
             }
         }
         _ => return false,
@@ -118,24 +120,24 @@ fn of_cross_covariance<T: Real, const N: usize, const M: usize>(id: &str, setup:
 }
 
 /// The innovation covariance with another noise.
-fn with_noise<T: Real, const N: usize, const M: usize>(
-    problem: &Problem<T, N, M>,
-    previous: &Step<T, N, M>,
-    now: &Step<T, N, M>,
+fn with_noise<T: Real>(
+    problem: &Problem<T, Dyn, Dyn>,
+    previous: &Step<T, Dyn, Dyn>,
+    now: &Step<T, Dyn, Dyn>,
     j: usize,
-    noise: SMatrix<T, M, M>,
-) -> SMatrix<T, M, M> {
-    let equations = Equations::standard(problem);
-    if equations.converts {
+    noise: DMatrix<T>,
+) -> DMatrix<T> {
+    let equation = Equations::standard().innovation_covariance;
+    if problem.conversion().is_some() {
         let other = Step {
-            converted_covariance: noise,
+            converted_covariance: Some(noise),
             ..now.clone()
         };
-        return (equations.innovation_covariance)(problem, previous, &other, j);
+        return equation(problem, previous, &other, j);
     }
     let other = Problem {
         measurement_noise: noise,
         ..problem.clone()
     };
-    (equations.innovation_covariance)(&other, previous, now, j)
+    equation(&other, previous, now, j)
 }

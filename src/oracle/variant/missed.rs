@@ -5,22 +5,23 @@
 use super::super::setup::Setup;
 use crate::gaussian::log_density;
 use crate::imm::probability::{evidence, mode_probability, relative_likelihood};
-use crate::imm::{Equations, Problem, Step};
-use crate::matrix::{NotPositiveDefinite, ldl};
+use crate::imm::{Equations, Failure, Problem, Step, cycle};
+use crate::matrix::ldl;
 use crate::number::Real;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{DMatrix, DVector, Dyn};
 
 /// Applies a variant of a step without a detection; whether it is one.
-pub(super) fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+pub(super) fn apply<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     of_measurement(id, setup) || of_estimate(id, setup) || of_probability(id, setup)
 }
 
 /// A measurement is put where there is none.
-fn of_measurement<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_measurement<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     match id {
         "missed-detection-as-zero" => {
+            let m = setup.problem.m().0;
             for measurement in &mut setup.measurements {
-                measurement.get_or_insert_with(SVector::zeros);
+                measurement.get_or_insert_with(|| DVector::zeros(m));
             }
         }
         "missed-detection-as-the-last-measurement" => {
@@ -36,21 +37,21 @@ fn of_measurement<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut
 }
 
 /// The estimates.
-fn of_estimate<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_estimate<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let equations = &mut setup.equations;
     match id {
         // ν = 0, and everything else as with a detection
         "missed-detection-as-zero-innovation" => {
             equations.undetected_covariance = |problem, previous, now, j| {
                 let found = detected(problem, previous, now, j);
-                found.map_or_else(|_| undecided(), |found| found.updated[j].covariance.clone())
+                found.map_or_else(|_| undecided(problem), |found| found.updated[j].covariance.clone())
             };
             equations.undetected_log_likelihood = |problem, previous, now, j| {
-                let found = detected(problem, previous, now, j);
-                found.map_or_else(
-                    |_| T::undecided(),
-                    |found| log_density(&SVector::zeros(), &ldl(&found.innovation_covariances[j])),
-                )
+                let found = detected(problem, previous, now, j).ok()?;
+                Some(log_density(
+                    &DVector::zeros(problem.m().0),
+                    &ldl(&found.innovation_covariances[j]),
+                ))
             };
             equations.undetected_mode_probability = |_, _, now, j| by_bayes(now, j);
         }
@@ -58,7 +59,7 @@ fn of_estimate<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Se
         "missed-detection-updates-the-covariance" => {
             equations.undetected_covariance = |problem, previous, now, j| {
                 let found = detected(problem, previous, now, j);
-                found.map_or_else(|_| undecided(), |found| found.updated[j].covariance.clone())
+                found.map_or_else(|_| undecided(problem), |found| found.updated[j].covariance.clone())
             };
         }
         // the estimate of the step before
@@ -77,7 +78,7 @@ fn of_estimate<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Se
 }
 
 /// The mode probabilities.
-fn of_probability<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_probability<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let equations = &mut setup.equations;
     match id {
         // μⱼ of step k−1
@@ -86,15 +87,18 @@ fn of_probability<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut
         }
         // N(0; 0, S) with the S of the last detection
         "last-covariance-used-again" => {
-            equations.undetected_log_likelihood = |_, previous, _, j| match previous.measurement {
-                Some(_) => log_density(&SVector::zeros(), &ldl(&previous.innovation_covariances[j])),
-                None => previous.log_likelihoods[j].clone(),
+            equations.undetected_log_likelihood = |problem, previous, _, j| match previous.measurement {
+                Some(_) => {
+                    let factors = ldl(&previous.innovation_covariances[j]);
+                    Some(log_density(&DVector::zeros(problem.m().0), &factors))
+                }
+                None => Some(last_likelihood(previous, j)),
             };
             equations.undetected_mode_probability = |_, _, now, j| by_bayes(now, j);
         }
         // Lⱼ of the last detection; before the first there is none, and all are one
         "last-likelihood-used-again" => {
-            equations.undetected_log_likelihood = |_, previous, _, j| previous.log_likelihoods[j].clone();
+            equations.undetected_log_likelihood = |_, previous, _, j| Some(last_likelihood(previous, j));
             equations.undetected_mode_probability = |_, _, now, j| by_bayes(now, j);
         }
         _ => return false,
@@ -102,35 +106,31 @@ fn of_probability<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut
     true
 }
 
-/// The step with values of mode j as if the predicted measurement had been measured.
-fn detected<T: Real, const N: usize, const M: usize>(
-    problem: &Problem<T, N, M>,
-    previous: &Step<T, N, M>,
-    now: &Step<T, N, M>,
+/// The step with values of the modes up to j as if the combined prediction had been measured, which is also where R^c is taken: there is
+/// nothing else.
+fn detected<T: Real>(
+    problem: &Problem<T, Dyn, Dyn>,
+    previous: &Step<T, Dyn, Dyn>,
+    now: &Step<T, Dyn, Dyn>,
     j: usize,
-) -> Result<Step<T, N, M>, NotPositiveDefinite> {
-    let (e, mut now) = (Equations::standard(problem), now.clone());
-    if e.draws_points {
-        now.predicted_square_roots[j] = (e.predicted_square_root)(problem, previous, &now, j)?;
-        for s in 0..now.predicted_points[j].len() {
-            now.predicted_points[j][s] = (e.predicted_point)(problem, previous, &now, j, s);
-            now.measured_points[j][s] = (e.measured_point)(problem, previous, &now, j, s);
-        }
+) -> Result<Step<T, Dyn, Dyn>, Failure> {
+    let (e, mut now) = (Equations::standard(), now.clone());
+    let z = problem.sensor.of(&now.combined_prediction.mean);
+    now.converted_measurement = (e.converted_measurement)(problem, &z, &now, 0);
+    now.converted_covariance = (e.converted_covariance)(problem, &z, &now, 0);
+    for i in 0..=j {
+        cycle::update(&e, problem, previous, &mut now, &z, i, &mut ())?;
     }
-    if e.converts {
-        // R^c where the prediction is: there is nothing else.
-        now.converted_covariance = (Equations::converted_at_prediction().converted_covariance)(problem, previous, &now);
-    }
-    now.predicted_measurements[j] = (e.predicted_measurement)(problem, previous, &now, j);
-    now.innovation_covariances[j] = (e.innovation_covariance)(problem, previous, &now, j);
-    now.cross_covariances[j] = (e.cross_covariance)(problem, previous, &now, j);
-    now.gains[j] = (e.gain)(problem, previous, &now, j)?;
-    now.updated[j].covariance = (e.updated_covariance)(problem, previous, &now, j);
     Ok(now)
 }
 
+/// The log-likelihood of the step before; before the first detection there is none, and all likelihoods are one.
+fn last_likelihood<T: Real>(previous: &Step<T, Dyn, Dyn>, j: usize) -> T {
+    previous.log_likelihoods.get(j).cloned().unwrap_or_else(T::zero)
+}
+
 /// μⱼ by Bayes' rule from the log-likelihoods that stand in the record.
-fn by_bayes<T: Real, const N: usize, const M: usize>(now: &Step<T, N, M>, j: usize) -> T {
+fn by_bayes<T: Real>(now: &Step<T, Dyn, Dyn>, j: usize) -> T {
     let (logarithms, predicted) = (&now.log_likelihoods, &now.predicted_mode_probabilities);
     let likelihoods: Vec<T> = (0..predicted.len())
         .map(|i| relative_likelihood(logarithms, predicted, i))
@@ -138,6 +138,6 @@ fn by_bayes<T: Real, const N: usize, const M: usize>(now: &Step<T, N, M>, j: usi
     mode_probability(&likelihoods[j], &predicted[j], &evidence(&likelihoods, predicted))
 }
 
-fn undecided<T: Real, const N: usize>() -> SMatrix<T, N, N> {
-    SMatrix::from_fn(|_, _| T::undecided())
+fn undecided<T: Real>(problem: &Problem<T, Dyn, Dyn>) -> DMatrix<T> {
+    DMatrix::from_element(problem.n().0, problem.n().0, T::undecided())
 }

@@ -8,10 +8,10 @@ use crate::gaussian::{Gaussian, mixture_covariance, mixture_mean};
 use crate::imm::probability::{mixing_probability, predicted_mode_probability};
 use crate::imm::{Problem, Step};
 use crate::number::Real;
-use nalgebra::SMatrix;
+use nalgebra::{DMatrix, Dyn};
 
 /// Applies a variant of the mixing; whether it is one.
-pub(super) fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+pub(super) fn apply<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     of_chain(id, setup)
         || of_mixing_probability(id, setup)
         || of_mixed_estimate(id, setup)
@@ -19,61 +19,71 @@ pub(super) fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &m
 }
 
 /// The predicted mode probabilities.
-fn of_chain<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_chain<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let equations = &mut setup.equations;
     match id {
         // cⱼ = Σᵢ pⱼᵢ μᵢ, and the mixing probabilities by the same matrix
-        "transition-transposed" => setup.problem.transition = transposed(&setup.problem.transition),
+        "transition-transposed" => setup.problem.chain = transposed(&setup.problem.chain),
         // cⱼ = μⱼ; the mixing probabilities are those of the chain
         "chain-skipped" => {
             equations.predicted_mode_probability = |_, previous, _, j| previous.mode_probabilities[j].clone();
-            equations.mixing_probability = |problem, previous, _, j, i| mixing(problem, previous, i, j);
+            equations.mixing_probabilities =
+                |problem, previous, _, j| each(problem, |i| mixing(problem, previous, i, j));
         }
         // no chain and no mixing: filters side by side
         "modes-without-interaction" => {
             equations.predicted_mode_probability = |_, previous, _, j| previous.mode_probabilities[j].clone();
-            equations.mixing_probability = |_, _, _, j, i| identity(i, j);
+            equations.mixing_probabilities = |problem, _, _, j| each(problem, |i| identity(i, j));
         }
         _ => return false,
     }
     true
 }
 
-/// The mixing probabilities of previous mode i in current mode j.
-fn of_mixing_probability<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
-    let entry = &mut setup.equations.mixing_probability;
+/// The mixing probabilities of all previous modes i in current mode j.
+fn of_mixing_probability<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
+    let entry = &mut setup.equations.mixing_probabilities;
     match id {
         // pⱼᵢ μᵢ / cⱼ
         "transition-transposed-in-mixing" => {
-            *entry = |problem, previous, now, j, i| {
-                let (chain, predicted) = (transposed(&problem.transition), &now.predicted_mode_probabilities[j]);
-                mixing_probability(&chain, &previous.mode_probabilities, predicted, i, j)
+            *entry = |problem, previous, now, j| {
+                let (chain, predicted) = (transposed(&problem.chain), &now.predicted_mode_probabilities[j]);
+                each(problem, |i| {
+                    mixing_probability(&chain, &previous.mode_probabilities, predicted, i, j)
+                })
             }
         }
         // pᵢⱼ μᵢ
         "mixing-not-normalised" => {
-            *entry = |problem, previous, _, j, i| {
-                let from = previous.mode_probabilities[i].clone();
-                problem.transition[i][j].clone() * from
+            *entry = |problem, previous, _, j| {
+                each(problem, |i| {
+                    problem.chain[i][j].clone() * previous.mode_probabilities[i].clone()
+                })
             }
         }
         // μⱼ∣ᵢ in the place of μᵢ∣ⱼ
-        "mixing-indices-swapped" => *entry = |problem, previous, _, j, i| mixing(problem, previous, j, i),
+        "mixing-indices-swapped" => {
+            *entry = |problem, previous, _, j| each(problem, |i| mixing(problem, previous, j, i));
+        }
         // pᵢⱼ cᵢ / cⱼ
         "mixing-with-predicted-probabilities" => {
-            *entry = |problem, _, now, j, i| {
+            *entry = |problem, _, now, j| {
                 let predicted = &now.predicted_mode_probabilities;
-                mixing_probability(&problem.transition, predicted, &predicted[j], i, j)
+                each(problem, |i| {
+                    mixing_probability(&problem.chain, predicted, &predicted[j], i, j)
+                })
             }
         }
         // pᵢⱼ μᵢ / Σⱼ pᵢⱼ μᵢ = pᵢⱼ
-        "mixing-normalised-by-rows" => *entry = |problem, _, _, j, i| problem.transition[i][j].clone(),
+        "mixing-normalised-by-rows" => {
+            *entry = |problem, _, _, j| each(problem, |i| problem.chain[i][j].clone());
+        }
         // pᵢⱼ / Σᵢ pᵢⱼ
         "mixing-without-mode-probabilities" => {
-            *entry = |problem, _, _, j, i| {
+            *entry = |problem, _, _, j| {
                 let ones = vec![T::one(); problem.modes.len()];
-                let sum = predicted_mode_probability(&problem.transition, &ones, j);
-                mixing_probability(&problem.transition, &ones, &sum, i, j)
+                let sum = predicted_mode_probability(&problem.chain, &ones, j);
+                each(problem, |i| mixing_probability(&problem.chain, &ones, &sum, i, j))
             }
         }
         _ => return false,
@@ -82,7 +92,7 @@ fn of_mixing_probability<T: Real, const N: usize, const M: usize>(id: &str, setu
 }
 
 /// The mixed estimates, mean and covariance.
-fn of_mixed_estimate<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_mixed_estimate<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let equations = &mut setup.equations;
     match id {
         // each mode starts from its own estimate
@@ -132,7 +142,7 @@ fn of_mixed_estimate<T: Real, const N: usize, const M: usize>(id: &str, setup: &
 }
 
 /// The mixed covariances.
-fn of_mixed_covariance<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_mixed_covariance<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let entry = &mut setup.equations.mixed_covariance;
     match id {
         // P⁰ʲ = Σᵢ μᵢ∣ⱼ Pⁱ
@@ -155,7 +165,8 @@ fn of_mixed_covariance<T: Real, const N: usize, const M: usize>(id: &str, setup:
         // x̂ⁱ − x̂⁰ⁱ
         "mixed-spread-about-previous-index" => {
             *entry = |problem, previous, now, j| {
-                let mut sum = SMatrix::zeros();
+                let n = problem.n().0;
+                let mut sum = DMatrix::zeros(n, n);
                 for (i, estimate) in previous.updated.iter().enumerate() {
                     let weights: Vec<T> = (0..problem.modes.len())
                         .map(|l| mixing(problem, previous, l, i))
@@ -189,13 +200,8 @@ fn of_mixed_covariance<T: Real, const N: usize, const M: usize>(id: &str, setup:
 }
 
 /// μᵢ∣ⱼ = pᵢⱼ μᵢ / Σᵢ pᵢⱼ μᵢ, whatever stands in the record for cⱼ.
-fn mixing<T: Real, const N: usize, const M: usize>(
-    problem: &Problem<T, N, M>,
-    previous: &Step<T, N, M>,
-    i: usize,
-    j: usize,
-) -> T {
-    let (chain, probabilities) = (&problem.transition, &previous.mode_probabilities);
+fn mixing<T: Real>(problem: &Problem<T, Dyn, Dyn>, previous: &Step<T, Dyn, Dyn>, i: usize, j: usize) -> T {
+    let (chain, probabilities) = (&problem.chain, &previous.mode_probabilities);
     mixing_probability(
         chain,
         probabilities,
@@ -206,46 +212,36 @@ fn mixing<T: Real, const N: usize, const M: usize>(
 }
 
 /// The mixing probabilities with their indices swapped.
-fn swapped<T: Real, const N: usize, const M: usize>(
-    problem: &Problem<T, N, M>,
-    previous: &Step<T, N, M>,
-    j: usize,
-) -> Vec<T> {
-    (0..problem.modes.len())
-        .map(|i| mixing(problem, previous, j, i))
-        .collect()
+fn swapped<T: Real>(problem: &Problem<T, Dyn, Dyn>, previous: &Step<T, Dyn, Dyn>, j: usize) -> Vec<T> {
+    each(problem, |i| mixing(problem, previous, j, i))
+}
+
+/// One number for each previous mode i.
+fn each<T: Real>(problem: &Problem<T, Dyn, Dyn>, of: impl Fn(usize) -> T) -> Vec<T> {
+    (0..problem.modes.len()).map(of).collect()
 }
 
 /// The updated estimates of the step before, those of modes below j overwritten by the mixed ones.
-fn overwritten<T: Real, const N: usize, const M: usize>(
-    previous: &Step<T, N, M>,
-    now: &Step<T, N, M>,
-    j: usize,
-) -> Vec<Gaussian<T, N>> {
+fn overwritten<T: Real>(previous: &Step<T, Dyn, Dyn>, now: &Step<T, Dyn, Dyn>, j: usize) -> Vec<Gaussian<T, Dyn>> {
     let mut estimates = previous.updated.clone();
     estimates[..j].clone_from_slice(&now.mixed[..j]);
     estimates
 }
 
 /// The predictions of the estimates from which the modes start.
-fn own_predictions<T: Real, const N: usize, const M: usize>(
-    problem: &Problem<T, N, M>,
-    now: &Step<T, N, M>,
-) -> Vec<Gaussian<T, N>> {
+fn own_predictions<T: Real>(problem: &Problem<T, Dyn, Dyn>, now: &Step<T, Dyn, Dyn>) -> Vec<Gaussian<T, Dyn>> {
     let modes = problem.modes.iter().zip(&now.mixed);
     let predictions = modes.map(|(mode, start)| Gaussian {
-        mean: kalman::predicted_mean(&mode.transition, &start.mean),
-        covariance: kalman::predicted_covariance(&mode.transition, &start.covariance, &mode.noise),
+        mean: mode.motion.of(&start.mean),
+        covariance: kalman::predicted_covariance(&mode.motion.matrix(), &start.covariance, &mode.noise),
     });
     predictions.collect()
 }
 
 /// Σᵢ wᵢ Pⁱ.
-pub(super) fn without_spread<T: Real, const N: usize>(
-    weights: &[T],
-    components: &[Gaussian<T, N>],
-) -> SMatrix<T, N, N> {
-    let mut sum = SMatrix::zeros();
+pub(super) fn without_spread<T: Real>(weights: &[T], components: &[Gaussian<T, Dyn>]) -> DMatrix<T> {
+    let n = components[0].mean.len();
+    let mut sum = DMatrix::zeros(n, n);
     for (weight, component) in weights.iter().zip(components) {
         sum += &component.covariance * weight.clone();
     }
@@ -253,11 +249,11 @@ pub(super) fn without_spread<T: Real, const N: usize>(
 }
 
 /// Σᵢ wᵢ [ Pⁱ + (x̂ⁱ − x̂)ᵀ(x̂ⁱ − x̂) ], the scalar added to every entry.
-pub(super) fn with_inner_products<T: Real, const N: usize>(
+pub(super) fn with_inner_products<T: Real>(
     weights: &[T],
-    components: &[Gaussian<T, N>],
-    mean: &nalgebra::SVector<T, N>,
-) -> SMatrix<T, N, N> {
+    components: &[Gaussian<T, Dyn>],
+    mean: &nalgebra::DVector<T>,
+) -> DMatrix<T> {
     let mut sum = without_spread(weights, components);
     for (weight, component) in weights.iter().zip(components) {
         let deviation = &component.mean - mean;
@@ -265,7 +261,7 @@ pub(super) fn with_inner_products<T: Real, const N: usize>(
         for entry in &deviation {
             square += entry.clone() * entry.clone();
         }
-        sum += SMatrix::from_element(square * weight.clone());
+        sum += DMatrix::from_element(mean.len(), mean.len(), square * weight.clone());
     }
     sum
 }

@@ -44,10 +44,14 @@ mod square_root;
 mod update;
 
 use super::setup::Setup;
-use crate::imm::{Problem, Quantity, Scope, Step};
-use crate::model::{Measurement, PolarComponent};
+use crate::filter::cubature;
+use crate::gaussian::Gaussian;
+use crate::imm::equations::{Factored, noise, seen, used};
+use crate::imm::{Needs, Problem, Quantity, Step};
+use crate::model::{PolarComponent, Sensor};
 use crate::number::Real;
-use nalgebra::{SMatrix, SVector};
+use crate::rule::Rule;
+use nalgebra::{DMatrix, DVector, Dyn};
 use serde::de::{Deserializer, Error};
 use serde::{Deserialize, Serialize};
 use std::sync::LazyLock;
@@ -129,25 +133,29 @@ impl Applies {
     }
 
     /// Whether it can make a difference here. Where it cannot, the variant leaves every value as it is.
-    pub fn to<T: Real, const N: usize, const M: usize>(self, setup: &Setup<T, N, M>) -> bool {
+    pub fn to<T: Real>(self, setup: &Setup<T>) -> bool {
         let problem = &setup.problem;
         match self {
             Self::All => true,
-            Self::Points => problem.rule.is_some(),
-            Self::Conversions => problem.measurement.is_converted(),
-            Self::Kalman => problem.rule.is_none() && problem.fixed_gains.is_none(),
-            Self::Covariances => problem.fixed_gains.is_none(),
-            Self::FixedGains => problem.fixed_gains.is_some(),
+            Self::Points => draws_points(setup),
+            Self::Conversions => problem.conversion().is_some(),
+            Self::Kalman => !draws_points(setup) && problem.has_covariances(),
+            Self::Covariances => problem.has_covariances(),
+            Self::FixedGains => !problem.has_covariances(),
             Self::EmbeddedMotion => problem
                 .modes
                 .iter()
-                .any(|mode| zero_rows(&mode.transition).next().is_some()),
+                .any(|mode| zero_rows(&mode.motion.matrix()).next().is_some()),
             Self::UnequalDimensions => {
                 let lacks = |entry: usize| problem.modes.iter().filter(move |mode| mode.lacks(entry)).count();
-                (0..N).any(|entry| (1..problem.modes.len()).contains(&lacks(entry)))
+                (0..problem.n().0).any(|entry| (1..problem.modes.len()).contains(&lacks(entry)))
             }
-            Self::Angles => (0..M).any(|row| problem.measurement.is_angle(row)),
-            Self::Bearings => (0..M).any(|row| problem.measurement.reports(row) == Some(PolarComponent::Bearing)),
+            Self::Angles => {
+                problem.conversion().is_none() && (0..problem.m().0).any(|row| problem.sensor.is_angle(row))
+            }
+            Self::Bearings => {
+                (0..problem.m().0).any(|row| problem.sensor.reports(row) == Some(PolarComponent::Bearing))
+            }
             Self::Missed => setup.measurements.iter().any(Option::is_none),
             Self::SeveralModes => problem.modes.len() > 1,
         }
@@ -188,9 +196,9 @@ pub struct Variant {
 }
 
 impl Variant {
-    /// In whose equation it is made, in filters of a kind.
-    pub fn quantity_in(&self, scope: Scope) -> Quantity {
-        self.converted.filter(|_| scope.conversions).unwrap_or(self.quantity)
+    /// In whose equation it is made, in filters that convert measurements or do not.
+    pub fn quantity_in(&self, converts: bool) -> Quantity {
+        self.converted.filter(|_| converts).unwrap_or(self.quantity)
     }
 
     /// Whether it is made in the equation of a quantity, in filters of any kind.
@@ -199,14 +207,14 @@ impl Variant {
     }
 
     /// Whether it can make a difference here. Where it cannot, the variant leaves every value as it is.
-    pub fn applies_to<T: Real, const N: usize, const M: usize>(&self, setup: &Setup<T, N, M>) -> bool {
-        let exists = setup.equations.keeps_covariances || !self.needs_covariances();
+    pub fn applies_to<T: Real>(&self, setup: &Setup<T>) -> bool {
+        let exists = setup.problem.has_covariances() || !self.needs_covariances();
         exists && self.applies.to(setup)
     }
 
     /// Whether it has no meaning where there are no covariances.
     fn needs_covariances(&self) -> bool {
-        matches!(self.applies, Applies::Kalman | Applies::Covariances) || self.quantity.needs_covariances()
+        matches!(self.applies, Applies::Kalman | Applies::Covariances) || self.quantity.needs(Needs::Covariances)
     }
 }
 
@@ -260,8 +268,8 @@ pub fn find(id: &str) -> Option<&'static Variant> {
 
 /// Makes a run one of a variant; whether there is one of this name. Several may be applied, one after the other. What has no meaning
 /// without covariances leaves filters that carry none as they are.
-pub fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
-    if !setup.equations.keeps_covariances && find(id).is_some_and(Variant::needs_covariances) {
+pub fn apply<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
+    if !setup.problem.has_covariances() && find(id).is_some_and(Variant::needs_covariances) {
         return true;
     }
     input::apply(id, setup)
@@ -282,63 +290,59 @@ pub fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setu
 }
 
 /// Whether the filter draws points.
-fn draws_points<T, const N: usize, const M: usize>(setup: &Setup<T, N, M>) -> bool {
-    setup.problem.rule.is_some()
+fn draws_points<T: Real>(setup: &Setup<T>) -> bool {
+    let rules = setup.problem.filters.iter().flat_map(|filter| filter.rules());
+    rules.flatten().next().is_some()
+}
+
+/// The points of an estimate with another square root of its covariance; none where the filter of mode j draws none.
+fn drawn<T: Real>(
+    problem: &Problem<T, Dyn, Dyn>,
+    j: usize,
+    estimate: &Gaussian<T, Dyn>,
+    root: fn(&DMatrix<T>) -> Factored<DMatrix<T>>,
+) -> Factored<Vec<DVector<T>>> {
+    let Some(rule) = rule(problem, j) else {
+        return Ok(Vec::new());
+    };
+    let root = root(&estimate.covariance)?;
+    let points = rule.points.iter().map(|xi| cubature::point(&root, xi, &estimate.mean));
+    Ok(points.collect())
+}
+
+/// The rule of the filter of mode j, if it draws points.
+fn rule<T: Real>(problem: &Problem<T, Dyn, Dyn>, j: usize) -> Option<&Rule<T, Dyn>> {
+    problem.filter(j).rules().into_iter().flatten().next()
 }
 
 /// The rows of a motion that are zero: it sets these entries of the state to zero, as constant velocity does where the state has an
 /// acceleration.
-fn zero_rows<T: Real, const N: usize>(motion: &SMatrix<T, N, N>) -> impl Iterator<Item = usize> + use<'_, T, N> {
-    (0..N).filter(|&row| motion.row(row).iter().all(T::is_zero))
-}
-
-/// The covariance of the noise of what the filter uses: R, or that of the converted measurement.
-fn noise<'a, T: Real, const N: usize, const M: usize>(
-    problem: &'a Problem<T, N, M>,
-    now: &'a Step<T, N, M>,
-) -> &'a SMatrix<T, M, M> {
-    if problem.measurement.is_converted() {
-        &now.converted_covariance
-    } else {
-        &problem.measurement_noise
-    }
-}
-
-/// What the filter uses of a measurement z: z itself, or the converted measurement.
-fn used<'a, T: Real, const N: usize, const M: usize>(
-    problem: &Problem<T, N, M>,
-    now: &'a Step<T, N, M>,
-) -> Option<&'a SVector<T, M>> {
-    let z = now.measurement.as_ref()?;
-    Some(if problem.measurement.is_converted() {
-        &now.converted_measurement
-    } else {
-        z
-    })
+fn zero_rows<T: Real>(motion: &DMatrix<T>) -> impl Iterator<Item = usize> + use<'_, T> {
+    (0..motion.nrows()).filter(|&row| motion.row(row).iter().all(T::is_zero))
 }
 
 /// Whether the measurement is a matrix times the state.
-fn is_linear<T, const N: usize, const M: usize>(problem: &Problem<T, N, M>) -> bool {
-    matches!(problem.measurement, Measurement::Linear(_))
+fn is_linear<T: Real>(problem: &Problem<T, Dyn, Dyn>) -> bool {
+    matches!(problem.sensor, Sensor::Linear(_))
 }
 
-/// The rule's weights for means and for covariances; none without a rule.
-fn weights<T, const N: usize, const M: usize>(problem: &Problem<T, N, M>) -> (&[T], &[T]) {
-    match &problem.rule {
+/// The weights of the rule of mode j for means and for covariances; none without a rule.
+fn weights<T: Real>(problem: &Problem<T, Dyn, Dyn>, j: usize) -> (&[T], &[T]) {
+    match rule(problem, j) {
         Some(rule) => (&rule.weights, &rule.covariance_weights),
         None => (&[], &[]),
     }
 }
 
 /// Sum of the rule's weights for covariances.
-fn sum_of_covariance_weights<T: Real, const N: usize, const M: usize>(problem: &Problem<T, N, M>) -> T {
-    let (_, weights) = weights(problem);
+fn sum_of_covariance_weights<T: Real>(problem: &Problem<T, Dyn, Dyn>, j: usize) -> T {
+    let (_, weights) = weights(problem, j);
     weights.iter().cloned().fold(T::zero(), |sum, weight| sum + weight)
 }
 
 /// The probabilities by which the estimate of this step is combined. At step 0, whose combined estimate is computed too, these are the
 /// only ones.
-fn or_initial<'a, T, const N: usize, const M: usize>(now: &'a Step<T, N, M>, weights: &'a [T]) -> &'a [T] {
+fn or_initial<'a, T: Real>(now: &'a Step<T, Dyn, Dyn>, weights: &'a [T]) -> &'a [T] {
     if now.step == 0 {
         &now.mode_probabilities
     } else {
@@ -352,8 +356,8 @@ fn number<T: Real>(count: usize) -> T {
 }
 
 /// The diagonal of a matrix, each entry changed, and zeros beside it.
-fn diagonal<T: Real, const D: usize>(matrix: &SMatrix<T, D, D>, entry: fn(&T) -> T) -> SMatrix<T, D, D> {
-    SMatrix::from_fn(|row, column| {
+fn diagonal<T: Real>(matrix: &DMatrix<T>, entry: fn(&T) -> T) -> DMatrix<T> {
+    matrix.map_with_location(|row, column, _| {
         if row == column {
             entry(&matrix[(row, row)])
         } else {

@@ -7,19 +7,18 @@ use super::{draws_points, sum_of_covariance_weights, weights, zero_rows};
 use crate::filter::{cubature, kalman, raw};
 use crate::imm::Equations;
 use crate::matrix::mirrored;
-use crate::number::{Field, Real};
-use nalgebra::SMatrix;
+use crate::number::Real;
 
 /// Applies a variant of the prediction; whether it is one.
-pub(super) fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+pub(super) fn apply<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     of_noise(id, setup) || of_mean(id, setup) || of_covariance(id, setup)
 }
 
 /// The process noise.
-fn of_noise<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_noise<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let modes = &mut setup.problem.modes;
     match id {
-        "process-noise-omitted" => modes.iter_mut().for_each(|mode| mode.noise = SMatrix::zeros()),
+        "process-noise-omitted" => modes.iter_mut().for_each(|mode| mode.noise.fill(T::zero())),
         "process-noise-doubled" => {
             for mode in modes {
                 mode.noise = &mode.noise + &mode.noise;
@@ -43,7 +42,7 @@ fn of_noise<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup
             setup.equations.predicted_covariance = |problem, _, now, j| {
                 let mode = &problem.modes[j];
                 let covariance = &now.mixed[j].covariance + &mode.noise;
-                kalman::predicted_covariance(&mode.transition, &covariance, &SMatrix::zeros())
+                kalman::predicted_covariance(&mode.motion.matrix(), &covariance, &(&mode.noise * T::zero()))
             }
         }
         // Σₛ wₛ [ (X*ₛ − x̂⁻)(X*ₛ − x̂⁻)ᵀ + Q ], where the weights do not sum to one
@@ -51,8 +50,8 @@ fn of_noise<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup
             if draws_points(setup) {
                 setup.equations.predicted_covariance = |problem, _, now, j| {
                     let (points, mean) = (&now.propagated_points[j], &now.predicted[j].mean);
-                    let noise = &problem.modes[j].noise * sum_of_covariance_weights(problem);
-                    cubature::weighted_covariance(weights(problem).1, points, mean, &noise)
+                    let noise = &problem.modes[j].noise * sum_of_covariance_weights(problem, j);
+                    cubature::weighted_covariance(weights(problem, j).1, points, mean, &noise)
                 }
             }
         }
@@ -62,17 +61,15 @@ fn of_noise<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup
 }
 
 /// The predicted mean, and what follows from it.
-fn of_mean<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_mean<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let equations = &mut setup.equations;
     match id {
         // what was mixed is not used: F x̂ʲ, F Pʲ Fᵀ + Q
         "prediction-from-own-estimate" => {
-            equations.predicted_mean = |problem, previous, _, j| {
-                kalman::predicted_mean(&problem.modes[j].transition, &previous.updated[j].mean)
-            };
+            equations.predicted_mean = |problem, previous, _, j| problem.modes[j].motion.of(&previous.updated[j].mean);
             equations.predicted_covariance = |problem, previous, _, j| {
                 let mode = &problem.modes[j];
-                kalman::predicted_covariance(&mode.transition, &previous.updated[j].covariance, &mode.noise)
+                kalman::predicted_covariance(&mode.motion.matrix(), &previous.updated[j].covariance, &mode.noise)
             };
         }
         // x̂⁻ = x̂⁰ʲ
@@ -80,24 +77,25 @@ fn of_mean<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<
         // x̂⁻ = F F x̂⁰ʲ
         "motion-applied-twice" => {
             equations.predicted_mean = |problem, previous, now, j| {
-                let once = (Equations::standard(problem).predicted_mean)(problem, previous, now, j);
-                kalman::predicted_mean(&problem.modes[j].transition, &once)
+                let once = (Equations::standard().predicted_mean)(problem, previous, now, j);
+                problem.modes[j].motion.of(&once)
             }
         }
         // Fᵢᵢ = 1 where the row i of F is zero
         "embedded-entries-kept" => {
             for mode in &mut setup.problem.modes {
-                let rows: Vec<usize> = zero_rows(&mode.transition).collect();
+                let Some(f) = mode.motion.matrix_mut() else { continue };
+                let rows: Vec<usize> = zero_rows(f).collect();
                 for row in rows {
-                    mode.transition[(row, row)] = T::one();
+                    f[(row, row)] = T::one();
                 }
             }
         }
         "motion-of-the-next-mode" => rotate_motions(setup),
         "motion-of-the-first-mode" => {
-            let first = setup.problem.modes[0].transition.clone();
+            let first = setup.problem.modes[0].motion.clone();
             for mode in &mut setup.problem.modes {
-                mode.transition.clone_from(&first);
+                mode.motion.clone_from(&first);
             }
         }
         _ => return false,
@@ -106,7 +104,7 @@ fn of_mean<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<
 }
 
 /// The predicted covariance.
-fn of_covariance<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_covariance<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let points = draws_points(setup);
     let entry = &mut setup.equations.predicted_covariance;
     match id {
@@ -115,7 +113,7 @@ fn of_covariance<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut 
             if !points {
                 *entry = |problem, _, now, j| {
                     let mode = &problem.modes[j];
-                    let transposed = mode.transition.transpose();
+                    let transposed = mode.motion.matrix().transpose();
                     kalman::predicted_covariance(&transposed, &now.mixed[j].covariance, &mode.noise)
                 }
             }
@@ -128,13 +126,13 @@ fn of_covariance<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut 
         "motion-on-one-side" => {
             *entry = |problem, _, now, j| {
                 let mode = &problem.modes[j];
-                mirrored(&mode.transition * &now.mixed[j].covariance + &mode.noise)
+                mirrored(&*mode.motion.matrix() * &now.mixed[j].covariance + &mode.noise)
             }
         }
         // zhu2016 (24) as printed: Σₛ wₛ X*ₛ X*ₛᵀ
         "raw-predicted-covariance" => {
             if points {
-                *entry = |problem, _, now, j| raw::raw_second_moment(weights(problem).1, &now.propagated_points[j]);
+                *entry = |problem, _, now, j| raw::raw_second_moment(weights(problem, j).1, &now.propagated_points[j]);
             }
         }
         // the points' deviations from the centre x̂⁰ʲ that was not moved
@@ -142,7 +140,7 @@ fn of_covariance<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut 
             if points {
                 *entry = |problem, _, now, j| {
                     let (points, mean) = (&now.propagated_points[j], &now.mixed[j].mean);
-                    cubature::weighted_covariance(weights(problem).1, points, mean, &problem.modes[j].noise)
+                    cubature::weighted_covariance(weights(problem, j).1, points, mean, &problem.modes[j].noise)
                 }
             }
         }
@@ -150,7 +148,7 @@ fn of_covariance<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut 
         "prediction-of-combined-covariance" => {
             *entry = |problem, previous, _, j| {
                 let mode = &problem.modes[j];
-                kalman::predicted_covariance(&mode.transition, &previous.combined.covariance, &mode.noise)
+                kalman::predicted_covariance(&mode.motion.matrix(), &previous.combined.covariance, &mode.noise)
             }
         }
         _ => return false,
@@ -159,11 +157,11 @@ fn of_covariance<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut 
 }
 
 /// Mode j moves as mode j + 1 does, the last as the first.
-fn rotate_motions<T: Field, const N: usize, const M: usize>(setup: &mut Setup<T, N, M>) {
+fn rotate_motions<T: Real>(setup: &mut Setup<T>) {
     let modes = &mut setup.problem.modes;
-    let mut motions: Vec<_> = modes.iter().map(|mode| mode.transition.clone()).collect();
+    let mut motions: Vec<_> = modes.iter().map(|mode| mode.motion.clone()).collect();
     motions.rotate_left(1);
     for (mode, motion) in modes.iter_mut().zip(motions) {
-        mode.transition = motion;
+        mode.motion = motion;
     }
 }

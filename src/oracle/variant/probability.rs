@@ -7,22 +7,24 @@ use crate::imm::printed::mode_probability_22;
 use crate::imm::probability::{evidence, mode_probability, relative_likelihood};
 use crate::imm::{Problem, Step};
 use crate::number::Real;
+use nalgebra::Dyn;
 use std::cmp::Ordering;
 
 /// Applies a variant of the mode probabilities; whether it is one.
-pub(super) fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+pub(super) fn apply<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     of_bayes(id, setup) || of_likelihood(id, setup) || of_result(id, setup)
 }
 
 /// Prior and normaliser.
-fn of_bayes<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_bayes<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let equations = &mut setup.equations;
     match id {
         // μⱼ = Lⱼ μⱼ(k−1) / Σᵢ Lᵢ μᵢ(k−1)
         "updated-with-old-probabilities" => {
             equations.relative_likelihood =
                 |_, previous, now, j| relative_likelihood(&now.log_likelihoods, &previous.mode_probabilities, j);
-            equations.evidence = |_, previous, now| evidence(&now.relative_likelihoods, &previous.mode_probabilities);
+            equations.evidence =
+                |_, previous, now, _| evidence(&now.relative_likelihoods, &previous.mode_probabilities);
             equations.mode_probability = |_, previous, now, j| {
                 mode_probability(
                     &now.relative_likelihoods[j],
@@ -33,7 +35,7 @@ fn of_bayes<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup
         }
         // μⱼ = Lⱼ / Σᵢ Lᵢ
         "prior-omitted" => {
-            equations.evidence = |_, _, now| evidence(&now.relative_likelihoods, &vec![T::one(); now.updated.len()]);
+            equations.evidence = |_, _, now, _| evidence(&now.relative_likelihoods, &vec![T::one(); now.updated.len()]);
             equations.mode_probability =
                 |_, _, now, j| mode_probability(&now.relative_likelihoods[j], &T::one(), &now.evidence);
         }
@@ -53,7 +55,7 @@ fn of_bayes<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup
 }
 
 /// The likelihoods.
-fn of_likelihood<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_likelihood<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let equations = &mut setup.equations;
     let entry = &mut equations.relative_likelihood;
     match id {
@@ -67,7 +69,7 @@ fn of_likelihood<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut 
         // Lⱼ itself, which may be too small for a double
         "likelihoods-exponentiated-before-comparing" => {
             *entry = |_, _, now, j| T::exp(&now.log_likelihoods[j]);
-            equations.log_evidence = |_, _, now| T::ln(&now.evidence);
+            equations.log_evidence = |_, _, now, _| T::ln(&now.evidence);
         }
         // max(Lⱼ, 2⁻¹⁰²²), the smallest normal double
         "likelihood-floor-smallest-double" => *entry = |_, _, now, j| floored(now, j, 2, 1022),
@@ -77,7 +79,7 @@ fn of_likelihood<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut 
         "likelihood-not-exponentiated" => {
             *entry = |_, _, now, j| now.log_likelihoods[j].clone();
             // their sum may be negative, and has no logarithm then
-            equations.log_evidence = |_, _, now| now.evidence.clone();
+            equations.log_evidence = |_, _, now, _| now.evidence.clone();
         }
         // all below half the smallest double, 2⁻¹⁰⁷⁵: they are zeros, and the predicted probabilities stand
         "vanishing-likelihoods-ignored" => {
@@ -95,7 +97,7 @@ fn of_likelihood<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut 
 }
 
 /// What is done with the probabilities after Bayes' rule.
-fn of_result<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_result<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let entry = &mut setup.equations.mode_probability;
     match id {
         "probability-floor-1e-3" => *entry = |problem, _, now, j| raised(problem, now, j, 1_000),
@@ -114,30 +116,25 @@ fn of_result<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setu
 }
 
 /// μⱼ by Bayes' rule.
-fn standard<T: Real, const N: usize, const M: usize>(_: &Problem<T, N, M>, now: &Step<T, N, M>, j: usize) -> T {
+fn standard<T: Real>(_: &Problem<T, Dyn, Dyn>, now: &Step<T, Dyn, Dyn>, j: usize) -> T {
     let predicted = &now.predicted_mode_probabilities[j];
     mode_probability(&now.relative_likelihoods[j], predicted, &now.evidence)
 }
 
 /// The probabilities of all modes by Bayes' rule.
-fn all<T: Real, const N: usize, const M: usize>(problem: &Problem<T, N, M>, now: &Step<T, N, M>) -> Vec<T> {
+fn all<T: Real>(problem: &Problem<T, Dyn, Dyn>, now: &Step<T, Dyn, Dyn>) -> Vec<T> {
     (0..problem.modes.len()).map(|j| standard(problem, now, j)).collect()
 }
 
 /// Λⱼ of likelihoods that are at least base⁻ᵉ.
-fn floored<T: Real, const N: usize, const M: usize>(now: &Step<T, N, M>, j: usize, base: i64, exponent: i64) -> T {
+fn floored<T: Real>(now: &Step<T, Dyn, Dyn>, j: usize, base: i64, exponent: i64) -> T {
     let floor = log_power(base, exponent);
     let logarithms: Vec<T> = now.log_likelihoods.iter().map(|l| at_least(l, &floor)).collect();
     relative_likelihood(&logarithms, &now.predicted_mode_probabilities, j)
 }
 
 /// μⱼ at least 1/n, and then all divided by their sum.
-fn raised<T: Real, const N: usize, const M: usize>(
-    problem: &Problem<T, N, M>,
-    now: &Step<T, N, M>,
-    j: usize,
-    n: i64,
-) -> T {
+fn raised<T: Real>(problem: &Problem<T, Dyn, Dyn>, now: &Step<T, Dyn, Dyn>, j: usize, n: i64) -> T {
     let floor = T::ratio(1, n);
     let raised: Vec<T> = all(problem, now).iter().map(|value| at_least(value, &floor)).collect();
     let sum = raised.iter().cloned().fold(T::zero(), |sum, value| sum + value);

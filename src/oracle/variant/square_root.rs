@@ -4,22 +4,21 @@
 
 use crate::matrix::{NotPositiveDefinite, cholesky};
 use crate::number::Real;
-use nalgebra::SMatrix;
+use nalgebra::DMatrix;
 
 /// A square root, or the pivot that is not positive.
-type Root<T, const N: usize> = Result<SMatrix<T, N, N>, NotPositiveDefinite>;
+type Root<T> = Result<DMatrix<T>, NotPositiveDefinite>;
 
 /// The upper triangular U with P = U Uᵀ: the lower factor of P with its rows and columns in reversed order, reversed back.
 ///
 /// Source: with J the reversal, J P J = L Lᵀ and U = J L J.
-pub(super) fn upper<T: Real, const N: usize>(covariance: &SMatrix<T, N, N>) -> Root<T, N> {
+pub(super) fn upper<T: Real>(covariance: &DMatrix<T>) -> Root<T> {
     // The lower triangle alone is read, as by the Cholesky factorisation.
     let entry = |row: usize, column: usize| covariance[(row.max(column), row.min(column))].clone();
-    let reversed = SMatrix::<T, N, N>::from_fn(|row, column| entry(N - 1 - row, N - 1 - column));
+    let last = covariance.nrows() - 1;
+    let reversed = covariance.map_with_location(|row, column, _| entry(last - row, last - column));
     let lower = cholesky(&reversed)?;
-    Ok(SMatrix::from_fn(|row, column| {
-        lower[(N - 1 - row, N - 1 - column)].clone()
-    }))
+    Ok(lower.map_with_location(|row, column, _| lower[(last - row, last - column)].clone()))
 }
 
 /// The symmetric S with P = S S: V √D Vᵀ from the eigenvectors V and eigenvalues D of P.
@@ -27,19 +26,20 @@ pub(super) fn upper<T: Real, const N: usize>(covariance: &SMatrix<T, N, N>) -> R
 /// Source: the cyclic Jacobi method, Golub and Van Loan, Matrix Computations, 4th edition, section 8.5. A rotation makes one entry
 /// beside the diagonal zero. From some sweep on the digits of agreement double with each; what twelve sweeps leave beside the
 /// diagonal is below the rounding of every number system in use, and is dropped.
-pub(super) fn symmetric<T: Real, const N: usize>(covariance: &SMatrix<T, N, N>) -> Root<T, N> {
+pub(super) fn symmetric<T: Real>(covariance: &DMatrix<T>) -> Root<T> {
     cholesky(covariance)?;
     let mut values = covariance.clone();
-    let mut vectors = SMatrix::<T, N, N>::identity();
+    let n = covariance.nrows();
+    let mut vectors = DMatrix::identity(n, n);
     for _ in 0..SWEEPS {
-        for p in 0..N {
-            for q in p + 1..N {
+        for p in 0..n {
+            for q in p + 1..n {
                 rotate(&mut values, &mut vectors, p, q);
             }
         }
     }
-    let mut root = SMatrix::zeros();
-    for i in 0..N {
+    let mut root = DMatrix::zeros(n, n);
+    for i in 0..n {
         let vector = vectors.column(i).clone_owned();
         root += (&vector * vector.transpose()) * values[(i, i)].sqrt();
     }
@@ -56,7 +56,7 @@ const SWEEPS: usize = 12;
 /// ```
 ///
 /// Both signs make it zero; that of d is the one of the smaller angle.
-fn rotate<T: Real, const N: usize>(values: &mut SMatrix<T, N, N>, vectors: &mut SMatrix<T, N, N>, p: usize, q: usize) {
+fn rotate<T: Real>(values: &mut DMatrix<T>, vectors: &mut DMatrix<T>, p: usize, q: usize) {
     let a = values[(q, p)].clone();
     if a.is_zero() {
         return;
@@ -74,7 +74,7 @@ fn rotate<T: Real, const N: usize>(values: &mut SMatrix<T, N, N>, vectors: &mut 
     values[(q, q)] += shift;
     values[(p, q)] = T::zero();
     values[(q, p)] = T::zero();
-    for k in 0..N {
+    for k in 0..values.nrows() {
         if k != p && k != q {
             let (kp, kq) = (values[(k, p)].clone(), values[(k, q)].clone());
             let turned = (

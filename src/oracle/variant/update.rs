@@ -9,16 +9,17 @@ use crate::imm::equations::Factored;
 use crate::imm::{Problem, Step};
 use crate::matrix::{check_positive_definite, ldl, mirrored, solve};
 use crate::number::Real;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{DMatrix, Dyn};
 
 /// Applies a variant of the update; whether it is one.
-pub(super) fn apply<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+pub(super) fn apply<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     of_gain(id, setup) || of_mean(id, setup) || of_covariance(id, setup)
 }
 
 /// The gain.
-fn of_gain<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_gain<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let points = draws_points(setup);
+    let is_square = setup.problem.n() == setup.problem.m();
     let entry = &mut setup.equations.gain;
     match id {
         // derbez2000 (2) as printed: P⁰ʲ Hᵀ (H P⁰ʲ Hᵀ + R)⁻¹
@@ -32,7 +33,7 @@ fn of_gain<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<
             if !points {
                 setup.equations.gain = gain_of_mixed;
                 setup.equations.updated_covariance = |problem, _, now, j| {
-                    let rest = SMatrix::identity() - &now.gains[j] * problem.measurement.matrix();
+                    let rest = DMatrix::identity(problem.n().0, problem.n().0) - &now.gains[j] * &*problem.h();
                     rest * &now.mixed[j].covariance
                 }
             }
@@ -40,7 +41,7 @@ fn of_gain<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<
         // C (S − R)⁻¹
         "gain-without-measurement-noise" => {
             *entry = |problem, _, now, j| {
-                let s = &now.innovation_covariances[j] - noise(problem, now);
+                let s = &now.innovation_covariances[j] - noise(problem, now, j);
                 gain(&now.cross_covariances[j], &s)
             }
         }
@@ -60,7 +61,7 @@ fn of_gain<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<
         }
         // S⁻¹ C, which has a shape only for n = m
         "gain-factors-exchanged" => {
-            if N == M {
+            if is_square {
                 *entry = |_, _, now, j| Ok(left_quotient(&now.innovation_covariances[j], &now.cross_covariances[j]));
             }
         }
@@ -77,7 +78,7 @@ fn of_gain<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<
 }
 
 /// The updated mean.
-fn of_mean<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_mean<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let entry = &mut setup.equations.updated_mean;
     match id {
         // x̂⁻ − W ν
@@ -96,9 +97,11 @@ fn of_mean<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<
         // x̂⁻ + W z
         "update-by-the-measurement" => {
             *entry = |_, _, now, j| {
-                let undecided = || SVector::from_fn(|_, _| T::undecided());
-                let z = now.measurement.clone().unwrap_or_else(undecided);
-                update::updated_mean(&now.predicted[j].mean, &now.gains[j], &z)
+                let mean = &now.predicted[j].mean;
+                match &now.measurement {
+                    Some(z) => update::updated_mean(mean, &now.gains[j], z),
+                    None => mean.clone(),
+                }
             }
         }
         _ => return false,
@@ -107,7 +110,7 @@ fn of_mean<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<
 }
 
 /// The updated covariance.
-fn of_covariance<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut Setup<T, N, M>) -> bool {
+fn of_covariance<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let entry = &mut setup.equations.updated_covariance;
     match id {
         // P⁻
@@ -128,14 +131,15 @@ fn of_covariance<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut 
         }
         // P⁻ − W Wᵀ
         "covariance-update-without-s" => {
-            *entry = |_, _, now, j| {
-                update::updated_covariance(&now.predicted[j].covariance, &now.gains[j], &SMatrix::identity())
+            *entry = |problem, _, now, j| {
+                let m = problem.m().0;
+                update::updated_covariance(&now.predicted[j].covariance, &now.gains[j], &DMatrix::identity(m, m))
             }
         }
         // P⁻ − W R Wᵀ
         "covariance-update-by-noise" => {
             *entry = |problem, _, now, j| {
-                update::updated_covariance(&now.predicted[j].covariance, &now.gains[j], noise(problem, now))
+                update::updated_covariance(&now.predicted[j].covariance, &now.gains[j], noise(problem, now, j))
             }
         }
         // (I − W H) P⁻ (I − W H)ᵀ, which is P⁻ − W Cᵀ − C Wᵀ + W (S − R) Wᵀ
@@ -148,43 +152,33 @@ fn of_covariance<T: Real, const N: usize, const M: usize>(id: &str, setup: &mut 
 }
 
 /// The Joseph form with so many times the noise: P⁻ − W Cᵀ − C Wᵀ + W (S − R) Wᵀ + times · W R Wᵀ.
-fn joseph<T: Real, const N: usize, const M: usize>(
-    problem: &Problem<T, N, M>,
-    now: &Step<T, N, M>,
-    j: usize,
-    times: &T,
-) -> SMatrix<T, N, N> {
+fn joseph<T: Real>(problem: &Problem<T, Dyn, Dyn>, now: &Step<T, Dyn, Dyn>, j: usize, times: &T) -> DMatrix<T> {
     let (w, c) = (&now.gains[j], &now.cross_covariances[j]);
-    let noise = noise(problem, now) * (times.clone() - T::one());
+    let noise = noise(problem, now, j) * (times.clone() - T::one());
     let s = &now.innovation_covariances[j] + noise;
     mirrored(&now.predicted[j].covariance - w * c.transpose() - c * w.transpose() + w * s * w.transpose())
 }
 
 /// P⁰ʲ Hᵀ (H P⁰ʲ Hᵀ + R)⁻¹.
-fn gain_of_mixed<T: Real, const N: usize, const M: usize>(
-    problem: &Problem<T, N, M>,
-    _: &Step<T, N, M>,
-    now: &Step<T, N, M>,
+fn gain_of_mixed<T: Real>(
+    problem: &Problem<T, Dyn, Dyn>,
+    _: &Step<T, Dyn, Dyn>,
+    now: &Step<T, Dyn, Dyn>,
     j: usize,
-) -> Factored<T, N, M> {
-    let (h, covariance) = (problem.measurement.matrix(), &now.mixed[j].covariance);
-    let s = kalman::innovation_covariance(&h, covariance, noise(problem, now));
+) -> Factored<DMatrix<T>> {
+    let (h, covariance) = (problem.h(), &now.mixed[j].covariance);
+    let s = kalman::innovation_covariance(&h, covariance, noise(problem, now, j));
     gain(&kalman::cross_covariance(covariance, &h), &s)
 }
 
 /// C S⁻¹ with an S that must be positive definite.
-fn gain<T: Real, const N: usize, const M: usize>(c: &SMatrix<T, N, M>, s: &SMatrix<T, M, M>) -> Factored<T, N, M> {
+fn gain<T: Real>(c: &DMatrix<T>, s: &DMatrix<T>) -> Factored<DMatrix<T>> {
     let factors = ldl(s);
     check_positive_definite(&factors)?;
     Ok(update::gain(c, &factors))
 }
 
 /// S⁻¹ C of matrices that have as many rows, N = M.
-fn left_quotient<T: Real, const N: usize, const M: usize>(
-    s: &SMatrix<T, M, M>,
-    c: &SMatrix<T, N, M>,
-) -> SMatrix<T, N, M> {
-    let square = SMatrix::<T, M, M>::from_fn(|row, column| c[(row, column)].clone());
-    let solution = solve(&ldl(s), &square);
-    SMatrix::from_fn(|row, column| solution[(row, column)].clone())
+fn left_quotient<T: Real>(s: &DMatrix<T>, c: &DMatrix<T>) -> DMatrix<T> {
+    solve(&ldl(s), c)
 }

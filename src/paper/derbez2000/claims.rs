@@ -10,7 +10,7 @@ use super::path::{Motion, Place};
 use super::relative::{Relative, Tally, extremes, relative};
 use super::scenario::{Scenario, Steps, follow};
 use super::{CLOSEST_POINT, arithmetic, long_term, scenario, search, stability};
-use crate::imm::Equations;
+use crate::imm::{Equations, Interaction};
 use crate::paper::comparison::Quantity;
 use crate::paper::experiment::Experiment;
 use crate::paper::monte_carlo::Progress;
@@ -111,10 +111,14 @@ impl Evidence {
 fn add_contestants(scenario: &mut Scenario) {
     let (setup, variances) = (&scenario.setup, scenario.setup.measurement_variances(&scenario.path));
     let mut other = setup.fixed_gain(variances);
-    (other.name, other.equations) = match setup.reading {
-        Reading::Mixed => ("un-mixed".to_owned(), Equations::fixed_gain_unmixed()),
-        Reading::Unmixed => ("mixed".to_owned(), Equations::fixed_gain()),
+    let (name, interaction) = match setup.reading {
+        Reading::Mixed => ("un-mixed", Interaction::Unmixed),
+        Reading::Unmixed => ("mixed", Interaction::Imm),
     };
+    name.clone_into(&mut other.name);
+    for problem in &mut other.problems {
+        problem.interaction = interaction;
+    }
     let without_spread = Contestant {
         name: "without spread".to_owned(),
         equations: Equations {
@@ -122,7 +126,7 @@ fn add_contestants(scenario: &mut Scenario) {
                 let weighted = now.mixing_probabilities[j].iter().zip(&previous.updated);
                 weighted.map(|(weight, estimate)| estimate.covariance * *weight).sum()
             },
-            ..Equations::kalman()
+            ..Equations::standard()
         },
         ..setup.imm(variances)
     };

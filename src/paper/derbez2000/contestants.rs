@@ -12,14 +12,15 @@
 use super::path::{Path, Place, position_of};
 use super::radar::{self, converted_variances};
 use super::{INITIAL_PROBABILITIES, MEASUREMENT_VARIANCES, TRANSITION};
+use crate::filter::Filter;
 use crate::filter::fixed_gain::FixedGain;
-use crate::imm::{Equations, Problem};
-use crate::model::Measurement;
+use crate::imm::{Equations, Interaction, Problem};
+use crate::model::Sensor;
 use crate::model::acceleration::{modes, position_matrix};
 use crate::model::conversion::converted_position;
 use crate::number::Real;
 use crate::steady::gains;
-use nalgebra::{Matrix1, Vector2, Vector3, Vector4};
+use nalgebra::{Matrix1, U1, U3, Vector2, Vector3, Vector4};
 
 /// What a filter of the comparison filters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,9 +39,9 @@ pub struct Contestant {
     /// What it filters.
     pub coordinates: Coordinates,
     /// Modes, chain and noises for either coordinate.
-    pub problems: [Problem<f64, 3, 1>; 2],
+    pub problems: [Problem<f64, U3, U1>; 2],
     /// Its equations.
-    pub equations: Equations<f64, 3, 1>,
+    pub equations: Equations<f64, U3, U1>,
     /// Mode probabilities at step 0.
     pub initial_probabilities: Vec<f64>,
     /// The variance of every coordinate's entries of the state at step 0; zero where there are no covariances.
@@ -158,7 +159,7 @@ impl Setup {
             name: "IMM".to_owned(),
             coordinates: Coordinates::Cartesian,
             problems: variances.map(|variance| self.problem(variance)),
-            equations: Equations::kalman(),
+            equations: Equations::standard(),
             initial_probabilities: INITIAL_PROBABILITIES.to_vec(),
             initial_variance: self.initial_variance,
             follows_noise: self.noise == Noise::OfEachMeasurement,
@@ -170,13 +171,13 @@ impl Setup {
         Contestant {
             name: "Fixed Gain".to_owned(),
             problems: variances.map(|variance| Problem {
-                fixed_gains: Some(self.steady_gains(variance)),
+                filters: self.steady_gains(variance).into_iter().map(Filter::given).collect(),
+                interaction: match self.reading {
+                    Reading::Mixed => Interaction::Imm,
+                    Reading::Unmixed => Interaction::Unmixed,
+                },
                 ..self.problem(variance)
             }),
-            equations: match self.reading {
-                Reading::Mixed => Equations::fixed_gain(),
-                Reading::Unmixed => Equations::fixed_gain_unmixed(),
-            },
             initial_variance: 0.0,
             follows_noise: false,
             ..self.imm(variances)
@@ -190,7 +191,7 @@ impl Setup {
             name: "CA".to_owned(),
             problems: imm.problems.clone().map(|problem| Problem {
                 modes: problem.modes[1..].to_vec(),
-                transition: vec![vec![1.0]],
+                chain: vec![vec![1.0]],
                 ..problem
             }),
             initial_probabilities: vec![1.0],
@@ -214,21 +215,21 @@ impl Setup {
     }
 
     /// Both modes of one coordinate, constant velocity first.
-    fn problem(&self, measurement_variance: f64) -> Problem<f64, 3, 1> {
+    fn problem(&self, measurement_variance: f64) -> Problem<f64, U3, U1> {
         Problem {
             modes: modes(&self.interval, &[self.noise_variance; 2]).to_vec(),
-            transition: TRANSITION.iter().map(|row| row.to_vec()).collect(),
-            measurement: Measurement::Linear(position_matrix()),
+            chain: TRANSITION.iter().map(|row| row.to_vec()).collect(),
+            sensor: Sensor::Linear(position_matrix()),
             measurement_noise: Matrix1::new(measurement_variance),
-            rule: None,
-            fixed_gains: None,
+            filters: vec![Filter::kalman()],
+            interaction: Interaction::Imm,
         }
     }
 
     /// The steady gain and innovation variance of either mode.
     ///
     /// Evidence: `the_fixed_gains_are_those_with_which_the_kalman_filters_end`.
-    fn steady_gains(&self, measurement_variance: f64) -> Vec<FixedGain<f64, 3, 1>> {
+    fn steady_gains(&self, measurement_variance: f64) -> Vec<FixedGain<f64, U3, U1>> {
         let index = gains::tracking_index(&self.noise_variance, &measurement_variance, &self.interval);
         let of_velocity = gains::alpha_beta_root(&index);
         let of_acceleration = gains::alpha_beta_gamma_root(&index);

@@ -20,20 +20,21 @@
 //! Evidence: `a_measurement_of_the_whole_state_bounds_the_mixed_covariances` (property).
 
 use super::TRANSITION;
+use crate::filter::Filter;
 use crate::filter::fixed_gain::FixedGain;
 use crate::filter::{kalman, update};
 use crate::gaussian::{Gaussian, mixture_covariance};
-use crate::imm::{Equations, Imm, Initial, Problem};
+use crate::imm::{Imm, Initial, Interaction, Problem};
 use crate::matrix::ldl;
-use crate::model::Measurement;
+use crate::model::Sensor;
 use crate::model::acceleration::{constant_acceleration, modes, position_matrix};
-use crate::model::motion::Mode;
+use crate::model::motion::{Mode, Motion};
 use crate::number::{Enclosure, Field, Rational, Real};
 use crate::steady::gains;
 use crate::steady::polynomial::{has_radius_below, rows_of};
 use crate::steady::riccati::Riccati;
 use crate::steady::simulated::NotSimulated;
-use nalgebra::{Matrix1, Matrix3, RowVector3, Vector3};
+use nalgebra::{Matrix1, Matrix3, RowVector3, U1, U3, Vector3};
 
 /// Two motions that a filter tells apart by nothing, whose mixed covariances grow without bound — derbez2000 (theorem).
 ///
@@ -60,6 +61,7 @@ use nalgebra::{Matrix1, Matrix3, RowVector3, Vector3};
 ///     assert_eq!(f * f * f, Matrix3::zeros());
 /// }
 /// ```
+/// use immaculate::filter::Filter;
 ///
 /// Evidence: `the_mixed_covariances_of_the_theorem_s_instance_grow` (exact).
 pub fn growing_mixture<T: Field>() -> [Riccati<T, 3, 1>; 2] {
@@ -117,26 +119,26 @@ pub fn mixed_covariances(steps: usize) -> Vec<Matrix3<Rational>> {
 /// # Errors
 ///
 /// [`crate::imm::InvalidProblem`] never: the instance is part of the program, and a test runs it.
-pub fn growing_filter() -> Result<Imm<f64, 3, 1>, crate::imm::InvalidProblem> {
+pub fn growing_filter() -> Result<Imm<f64, U3, U1>, crate::imm::InvalidProblem> {
     let models = growing_mixture::<f64>();
     let mode = |(j, model): (usize, &Riccati<f64, 3, 1>)| Mode {
         name: format!("model {}", j + 1),
-        transition: model.transition,
+        motion: Motion::Linear(model.transition),
         noise: model.noise,
     };
     let problem = Problem {
         modes: models.iter().enumerate().map(mode).collect(),
-        transition: TRANSITION.iter().map(|row| row.to_vec()).collect(),
-        measurement: Measurement::Linear(models[0].measurement),
+        chain: TRANSITION.iter().map(|row| row.to_vec()).collect(),
+        sensor: Sensor::Linear(models[0].measurement),
         measurement_noise: models[0].measurement_noise,
-        rule: None,
-        fixed_gains: None,
+        filters: vec![Filter::kalman()],
+        interaction: Interaction::Imm,
     };
-    Imm::new(problem, Equations::kalman(), &identities(2))
+    Imm::new(problem, &identities(2))
 }
 
 /// Estimates of zero with identities as covariances, and equal probabilities.
-pub fn identities<T: Field>(modes: i64) -> Initial<T, 3> {
+pub fn identities<T: Field>(modes: i64) -> Initial<T, U3> {
     let estimate = Gaussian {
         mean: Vector3::zeros(),
         covariance: Matrix3::identity(),
@@ -149,19 +151,19 @@ pub fn identities<T: Field>(modes: i64) -> Initial<T, 3> {
 }
 
 /// One coordinate's two modes with t = 1, from the squared noise of both and the measurement variance.
-fn coordinate<T: Field>(noise_variances: &[T; 2], measurement_variance: T) -> Problem<T, 3, 1> {
+fn coordinate<T: Field>(noise_variances: &[T; 2], measurement_variance: T) -> Problem<T, U3, U1> {
     let ratio =
         |value: f64| T::rational(&Rational::from_decimal(&value.to_string()).unwrap_or_else(Rational::undecided));
     Problem {
         modes: modes(&T::one(), noise_variances).to_vec(),
-        transition: TRANSITION
+        chain: TRANSITION
             .iter()
             .map(|row| row.iter().map(|value| ratio(*value)).collect())
             .collect(),
-        measurement: Measurement::Linear(position_matrix()),
+        sensor: Sensor::Linear(position_matrix()),
         measurement_noise: Matrix1::new(measurement_variance),
-        rule: None,
-        fixed_gains: None,
+        filters: vec![Filter::kalman()],
+        interaction: Interaction::Imm,
     }
 }
 
@@ -180,7 +182,7 @@ pub fn gain_after_a_jump() -> Result<Vector3<Enclosure>, NotSimulated> {
     Enclosure::with_precision(256, || {
         let five = || Enclosure::integer(5);
         let problem = coordinate(&[five(), five()], Enclosure::ratio(1, 20));
-        let mut filter = Imm::new(problem, Equations::kalman(), &identities(2))?;
+        let mut filter = Imm::new(problem, &identities(2))?;
         for z in [60, 60, 0] {
             filter.step(Some(&Matrix1::new(Enclosure::integer(z))))?;
         }
@@ -204,17 +206,17 @@ pub fn is_locally_unstable(gain: &Vector3<Enclosure>, magnitude: &Rational) -> b
 pub fn fixed_gain_filter<T: Real>(
     roots: &[T; 2],
     mean: &Vector3<T>,
-) -> Result<Imm<T, 3, 1>, crate::imm::InvalidProblem> {
+) -> Result<Imm<T, U3, U1>, crate::imm::InvalidProblem> {
     let (one, [v, a]) = (T::one(), roots);
     let fixed = |gain, root: &T| FixedGain {
         gain,
         innovation_covariance: Matrix1::new(gains::innovation_variance(root, &one)),
     };
     let problem = Problem {
-        fixed_gains: Some(vec![
-            fixed(gains::alpha_beta_gain(v, &one), v),
-            fixed(gains::alpha_beta_gamma_gain(a, &one), a),
-        ]),
+        filters: vec![
+            Filter::given(fixed(gains::alpha_beta_gain(v, &one), v)),
+            Filter::given(fixed(gains::alpha_beta_gamma_gain(a, &one), a)),
+        ],
         // Nothing reads the process noises: the gains were computed from them.
         ..coordinate(&[T::zero(), T::zero()], one.clone())
     };
@@ -223,7 +225,7 @@ pub fn fixed_gain_filter<T: Real>(
         estimate.mean = mean.clone();
         estimate.covariance = Matrix3::zeros();
     }
-    Imm::new(problem, Equations::fixed_gain(), &initial)
+    Imm::new(problem, &initial)
 }
 
 /// The distances in position of two copies of the filter with θ = (4/5, 1/5), which see the same bounded data and start a millimetre apart,

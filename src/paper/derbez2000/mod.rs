@@ -19,7 +19,7 @@
 //! - 2.2 the recursion undone, (8): [`unrolled`](crate::steady::unrolled::unrolled)
 //! - 3 fixed gains: [`gains`](crate::steady::gains), [`riccati`](crate::steady::riccati), [`fixed_gain`](crate::filter::fixed_gain)
 //! - 3.1 moment matching: [`perturbation`](crate::steady::perturbation)
-//! - 3.2 coordinates: [`radar`], [`scenario::Coordinates`]
+//! - 3.2 coordinates: [`radar`], [`contestants::Coordinates`]
 //! - 4 simulations, tables 1 and 2: [`path`], [`contestants`], [`scenario`](mod@scenario), [`operations`](super::operations),
 //!   [`search`]
 //! - 5 stability of the whole: [`verdict`](crate::steady::verdict), [`map`](crate::steady::map)

@@ -15,7 +15,7 @@ use crate::paper::simulation::Run;
 use crate::paper::simulation::{self, Filter, Simulation};
 use crate::paper::specification::Choices;
 use crate::statistics::consistency::{nees, nis};
-use nalgebra::{Matrix1, Vector1, Vector2, Vector3, Vector4};
+use nalgebra::{Matrix1, U1, U3, Vector1, Vector2, Vector3, Vector4};
 use std::time::{Duration, Instant};
 
 /// A scenario with every choice made.
@@ -164,7 +164,7 @@ pub fn track(scenario: &Scenario, contestant: &Contestant, seen: &[Seen]) -> Run
 }
 
 /// A step of either coordinate.
-pub type Steps<'a> = [&'a Step<f64, 3, 1>; 2];
+pub type Steps<'a> = [&'a Step<f64, U3, U1>; 2];
 
 /// One contestant on one run's measurements: `keep` is shown every step with the truth. The time spent in the filters' steps, and the
 /// step that could not be computed, if there was one.
@@ -197,7 +197,7 @@ pub fn follow(
 }
 
 /// The estimate at step 0: exact, with the contestant's variance.
-fn initial(contestant: &Contestant, state: Vector3<f64>) -> Initial<f64, 3> {
+fn initial(contestant: &Contestant, state: Vector3<f64>) -> Initial<f64, U3> {
     let estimate = crate::gaussian::Gaussian {
         mean: state,
         covariance: nalgebra::Matrix3::identity() * contestant.initial_variance,
@@ -213,15 +213,15 @@ fn initial(contestant: &Contestant, state: Vector3<f64>) -> Initial<f64, 3> {
 /// # Panics
 ///
 /// When the problem is not valid: the paper's problems are part of the program, and a test runs all of them.
-fn filter(contestant: &Contestant, problem: Problem<f64, 3, 1>, initial: &Initial<f64, 3>) -> Imm<f64, 3, 1> {
-    Imm::new(problem, contestant.equations, initial).expect("the paper's problems are part of the program")
+fn filter(contestant: &Contestant, problem: Problem<f64, U3, U1>, initial: &Initial<f64, U3>) -> Imm<f64, U3, U1> {
+    Imm::with_equations(problem, contestant.equations, initial).expect("the paper's problems are part of the program")
 }
 
 /// A step of both coordinates' filters.
 fn both_steps(
     scenario: &Scenario,
     contestant: &Contestant,
-    filters: &mut [Imm<f64, 3, 1>; 2],
+    filters: &mut [Imm<f64, U3, U1>; 2],
     seen: &Seen,
 ) -> Result<(), Failure> {
     let (measured, noises) = match contestant.coordinates {

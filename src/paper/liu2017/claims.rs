@@ -5,9 +5,9 @@
 //! runs are in [`arithmetic`].
 
 use super::{BEARING_DEVIATION, arithmetic, quantity_of_row, scenario};
-use crate::imm::printed::cubature_with_likelihood_21;
+use crate::filter::Filter;
 use crate::imm::{Equations, Problem};
-use crate::model::{Conversion, Measurement, PolarComponent};
+use crate::model::Conversion;
 use crate::number::{Field, Rational, RationalFunction, Surd};
 use crate::paper::Effort;
 use crate::paper::comparison::Quantity;
@@ -213,16 +213,10 @@ fn with_converted_measurements(contestant: &Contestant) -> Contestant {
     Contestant {
         name: "IMM with converted measurements".to_owned(),
         problem: Problem {
-            measurement: Measurement::Converted {
-                components: [PolarComponent::Range, PolarComponent::Bearing],
-                position: [0, 2],
-                sensor: [0.0, 0.0],
-                conversion: Conversion::Standard,
-            },
-            rule: None,
+            filters: vec![Filter::converted(Conversion::Standard)],
             ..contestant.problem.clone()
         },
-        equations: Equations::converted(),
+        equations: Equations::standard(),
         points: None,
         ..contestant.clone()
     }
@@ -385,7 +379,7 @@ fn likelihood_exponent_effect(
     let mut both = scenario(&Choices::default())?;
     let as_printed = both.contestants.iter().map(|contestant| Contestant {
         name: format!("{} as printed", contestant.name),
-        equations: cubature_with_likelihood_21(),
+        equations: Equations::standard().with_likelihood_21(),
         ..contestant.clone()
     });
     let as_printed: Vec<Contestant> = as_printed.collect();

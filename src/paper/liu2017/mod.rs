@@ -5,7 +5,7 @@
 //!
 //! The paper in its own order, section by section:
 //!
-//! - 2 motion and measurement, (1): [`Mode`], [`Measurement`]
+//! - 2 motion and measurement, (1): [`Mode`], [`Sensor`]
 //! - 2.1 the integral, (2), (3): the head of [`crate::rule`]
 //! - 2.1.1 spherical rule, (4)-(7): [`sphere_vertex_weight`](crate::rule::simplex::sphere_vertex_weight),
 //!   [`sphere_edge_weight`](crate::rule::simplex::sphere_edge_weight), [`vertices`](crate::rule::simplex::vertices),
@@ -18,7 +18,7 @@
 //! - 3, step 2 A, time update, (14)-(17): [`point`](crate::filter::cubature::point), [`edge_weight`](crate::rule::simplex::edge_weight),
 //!   [printed](crate::rule::printed::edge_weight_16) as an n-th of it, [`weighted_mean`](crate::filter::cubature::weighted_mean),
 //!   [`weighted_covariance`](crate::filter::cubature::weighted_covariance)
-//! - 3, step 2 B, measurement update, (18)-(20): [`Measurement::of`](crate::model::Measurement::of),
+//! - 3, step 2 B, measurement update, (18)-(20): [`Sensor::of`](crate::model::Sensor::of),
 //!   [`innovation_covariance`](crate::filter::cubature::innovation_covariance),
 //!   [`cross_covariance`](crate::filter::cubature::cross_covariance), [`gain`](crate::filter::update::gain) and the rest of
 //!   [`update`](crate::filter::update)
@@ -27,7 +27,7 @@
 //! - 3, step 4, output, (23), (24): the mixture again
 //! - 4.1 models, (25)-(32): [`constant_velocity`],
 //!   [`coordinated_turn`](crate::model::motion::coordinated_turn), [`integrated_noise`],
-//!   [`Measurement::Polar`], [`TRANSITION`], [`scenario`]
+//!   [`Sensor::Polar`], [`TRANSITION`], [`scenario`]
 //! - 4.2 figures, table 1, (33), (34): [`root_mean_square`](crate::statistics::rmse::root_mean_square),
 //!   [`accumulated`](crate::statistics::rmse::accumulated), [`Reproduction`](super::result::Reproduction)
 //! - the claims: [`claims::judge`], those that need no runs in [`arithmetic`]
@@ -42,15 +42,15 @@ use super::comparison::Quantity;
 use super::scenario::{Contestant, Motion, Scenario};
 use super::simulation::Average;
 use super::specification::{Choices, InvalidChoice, liu2017 as specification};
-use crate::imm::printed::cubature_with_likelihood_21;
-use crate::imm::{Equations, Problem};
+use crate::filter::Filter;
+use crate::imm::{Equations, Interaction, Problem};
 use crate::matrix::cholesky;
-use crate::model::motion::{Mode, constant_velocity, integrated_noise};
-use crate::model::{Measurement, PolarComponent};
+use crate::model::motion::{self, Mode, constant_velocity, integrated_noise};
+use crate::model::{PolarComponent, Sensor};
 use crate::number::Rational;
 use crate::rule::RuleName;
 use crate::rule::unscented::Parameters;
-use nalgebra::{Matrix2, Matrix4, Vector2, Vector4};
+use nalgebra::{Matrix2, Matrix4, U2, U4, Vector2, Vector4};
 
 /// T, s.
 pub const INTERVAL: f64 = 1.0;
@@ -163,8 +163,8 @@ pub fn scenario(choices: &Choices) -> Result<Scenario, InvalidChoice> {
         _ => Parameters::for_gaussian(4),
     };
     let equations = match chosen("likelihood")? {
-        "printed" => cubature_with_likelihood_21(),
-        _ => Equations::cubature(),
+        "printed" => Equations::standard().with_likelihood_21(),
+        _ => Equations::standard(),
     };
     let deviations = Vector2::new(RANGE_DEVIATION, bearing_deviation);
     let contestant = |name: &str, rule: &RuleName| Contestant {
@@ -194,7 +194,7 @@ pub fn scenario(choices: &Choices) -> Result<Scenario, InvalidChoice> {
             "as-in-the-filters" => Some(truth_noise_root()),
             _ => None,
         },
-        measurement: measurement(),
+        sensor: sensor(),
         measurement_deviations: deviations,
         paired: chosen("pairing")? == "paired",
         average: Average::RootMeanSquare,
@@ -225,30 +225,30 @@ fn schedule(from_first_second: bool, shift: usize) -> Vec<Motion> {
 }
 
 /// Range and bearing from a radar at the origin.
-fn measurement() -> Measurement<f64, 4, 2> {
-    Measurement::Polar {
-        components: [PolarComponent::Range, PolarComponent::Bearing],
+fn sensor() -> Sensor<f64, U4, U2> {
+    Sensor::Polar {
+        components: vec![PolarComponent::Range, PolarComponent::Bearing],
         position: [0, 2],
-        sensor: [0.0, 0.0],
+        location: [0.0, 0.0],
     }
 }
 
 /// Three modes with the noise of (27) and (30), and no rule yet.
-fn problem(deviations: &Vector2<f64>) -> Problem<f64, 4, 2> {
+fn problem(deviations: &Vector2<f64>) -> Problem<f64, U4, U2> {
     let mode = |motion: Motion| Mode {
         name: motion.name().to_owned(),
-        transition: motion.transition(TURN_RATE, INTERVAL),
+        motion: motion::Motion::Linear(motion.transition(TURN_RATE, INTERVAL)),
         noise: integrated_noise(&NOISE_DENSITY, &INTERVAL),
     };
     Problem {
         modes: [Motion::Straight, Motion::LeftTurn, Motion::RightTurn]
             .map(mode)
             .to_vec(),
-        transition: TRANSITION.iter().map(|row| row.to_vec()).collect(),
-        measurement: measurement(),
+        chain: TRANSITION.iter().map(|row| row.to_vec()).collect(),
+        sensor: sensor(),
         measurement_noise: Matrix2::from_diagonal(&deviations.map(|deviation| deviation * deviation)),
-        rule: None,
-        fixed_gains: None,
+        filters: vec![Filter::kalman()],
+        interaction: Interaction::Imm,
     }
 }
 

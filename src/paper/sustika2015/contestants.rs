@@ -10,17 +10,18 @@
 //! ```
 
 use super::{INITIAL_PROBABILITIES, INITIAL_VELOCITY_ESTIMATE, INTERVAL, RADAR, TRANSITION};
+use crate::filter::Filter;
 use crate::gaussian::Gaussian;
-use crate::imm::{Equations, Initial, Problem};
+use crate::imm::{Equations, Initial, Interaction, Problem};
 use crate::model::conversion::Conversion;
-use crate::model::motion::Mode;
+use crate::model::motion::{self, Mode};
 use crate::model::wiener::{
     acceleration_noise_in_the_plane, constant_acceleration_in_the_plane, constant_velocity_in_the_plane,
     velocity_noise_in_the_plane,
 };
-use crate::model::{Measurement, PolarComponent};
+use crate::model::{PolarComponent, Sensor};
 use crate::rule::unscented::unscented_in;
-use nalgebra::{Matrix2, Matrix6, Vector2, Vector6};
+use nalgebra::{Matrix2, Matrix6, U2, U6, Vector2, Vector6};
 
 /// What is known at first of what the first measurement does not tell.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -90,33 +91,26 @@ pub struct Contestant {
     /// The paper's name for it.
     pub name: &'static str,
     /// Its modes, chain, measurement and rule.
-    pub problem: Problem<f64, 6, 2>,
+    pub problem: Problem<f64, U6, U2>,
     /// Its equations.
-    pub equations: Equations<f64, 6, 2>,
+    pub equations: Equations<f64, U6, U2>,
     /// The number of points of its rule, and of those with a weight other than zero; none for a Kalman filter.
     pub points: Option<(usize, usize)>,
 }
 
 /// What a measured range and bearing are of: the entries x and y of the state.
 const POSITION: [usize; 2] = [0, 1];
-const COMPONENTS: [PolarComponent; 2] = [PolarComponent::Range, PolarComponent::Bearing];
 
 impl Setup {
     /// IMM-CMKF.
     pub fn converted(&self) -> Contestant {
         let equations = match self.converted_at {
-            ConvertedAt::Measurement => Equations::converted(),
-            ConvertedAt::Prediction => Equations::converted_at_prediction(),
-        };
-        let measurement = Measurement::Converted {
-            components: COMPONENTS,
-            position: POSITION,
-            sensor: RADAR,
-            conversion: self.conversion,
+            ConvertedAt::Measurement => Equations::standard(),
+            ConvertedAt::Prediction => Equations::standard().with_conversion_at_prediction(),
         };
         Contestant {
             name: "IMM-CMKF",
-            problem: self.problem(measurement),
+            problem: self.problem(Filter::converted(self.conversion)),
             equations: self.mixed(&equations),
             points: None,
         }
@@ -128,34 +122,26 @@ impl Setup {
     ///
     /// When the rule's parameters have no rule; they are part of the program.
     pub fn unscented(&self, bearings: Bearings) -> Contestant {
-        let measurement = Measurement::Polar {
-            components: COMPONENTS,
-            position: POSITION,
-            sensor: RADAR,
-        };
         let [alpha, beta, kappa] = &self.unscented;
-        let rule = unscented_in(alpha, beta, kappa).expect("the parameters are part of the program");
+        let rule = unscented_in(U6, alpha, beta, kappa).expect("the parameters are part of the program");
         let effective = rule.weights.iter().filter(|weight| **weight != 0.0).count();
         let points = (rule.points.len(), effective);
         let equations = match bearings {
-            Bearings::Wrapped => Equations::cubature(),
-            Bearings::Plain => Equations::cubature().with_plain_bearings(),
+            Bearings::Wrapped => Equations::standard(),
+            Bearings::Plain => Equations::standard().with_plain_bearings(),
         };
         Contestant {
             name: match bearings {
                 Bearings::Wrapped => "IMM-UKF",
                 Bearings::Plain => "IMM-UKF, never wrapped",
             },
-            problem: Problem {
-                rule: Some(rule),
-                ..self.problem(measurement)
-            },
+            problem: self.problem(Filter::points(rule)),
             equations: self.mixed(&equations),
             points: Some(points),
         }
     }
 
-    fn mixed(&self, equations: &Equations<f64, 6, 2>) -> Equations<f64, 6, 2> {
+    fn mixed(&self, equations: &Equations<f64, U6, U2>) -> Equations<f64, U6, U2> {
         match self.mixing {
             Mixing::Embedded => *equations,
             Mixing::IndexWise => equations.with_index_wise_mixing(),
@@ -164,26 +150,30 @@ impl Setup {
     }
 
     /// Both modes, constant velocity first.
-    fn problem(&self, measurement: Measurement<f64, 6, 2>) -> Problem<f64, 6, 2> {
+    fn problem(&self, filter: Filter<f64, U6, U2>) -> Problem<f64, U6, U2> {
         let (t, q) = (&INTERVAL, &self.noise_density);
         Problem {
             modes: vec![
                 Mode {
                     name: "constant velocity".to_owned(),
-                    transition: constant_velocity_in_the_plane(t),
+                    motion: motion::Motion::Linear(constant_velocity_in_the_plane(t)),
                     noise: velocity_noise_in_the_plane(q, t),
                 },
                 Mode {
                     name: "constant acceleration".to_owned(),
-                    transition: constant_acceleration_in_the_plane(t),
+                    motion: motion::Motion::Linear(constant_acceleration_in_the_plane(t)),
                     noise: acceleration_noise_in_the_plane(q, t),
                 },
             ],
-            transition: TRANSITION.iter().map(|row| row.to_vec()).collect(),
-            measurement,
+            filters: vec![filter],
+            interaction: Interaction::Imm,
+            chain: TRANSITION.iter().map(|row| row.to_vec()).collect(),
+            sensor: Sensor::Polar {
+                components: vec![PolarComponent::Range, PolarComponent::Bearing],
+                position: POSITION,
+                location: RADAR,
+            },
             measurement_noise: Matrix2::from_diagonal(&self.variances()),
-            rule: None,
-            fixed_gains: None,
         }
     }
 
@@ -210,7 +200,7 @@ impl Setup {
     /// ```
     ///
     /// Evidence: `a_run_begins_at_the_first_measurement_and_is_measured_from_the_first_step_that_is_filtered`.
-    pub fn initial(&self, first: &Vector2<f64>) -> Initial<f64, 6> {
+    pub fn initial(&self, first: &Vector2<f64>) -> Initial<f64, U6> {
         let ([range, bearing], variances) = ([first[0], first[1]], self.variances());
         let position = self.conversion.position(&range, &bearing, &variances[1]);
         let (of_position, [of_velocity, of_acceleration]) = match self.initial {

@@ -6,7 +6,7 @@
 //! The paper in its own order, section by section. Its formulas are lost in the available copy and are put together again from what is
 //! left:
 //!
-//! - 2.1 model, (1)-(4): [`wiener`](crate::model::wiener), [`Measurement::of`](crate::model::Measurement::of),
+//! - 2.1 model, (1)-(4): [`wiener`](crate::model::wiener), [`Sensor::of`](crate::model::Sensor::of),
 //!   [`Problem`](crate::imm::Problem)
 //! - 2.2 interaction, (5)-(8): [`predicted_mode_probability`](crate::imm::probability::predicted_mode_probability),
 //!   [`mixing_probability`](crate::imm::probability::mixing_probability), [`mixture_mean`](crate::gaussian::mixture_mean),

@@ -5,7 +5,7 @@
 
 use crate::filter::cubature;
 use crate::model::conversion::{Conversion, converted_covariance, converted_position, in_the_plane};
-use crate::model::{Measurement, PolarComponent};
+use crate::model::{PolarComponent, Sensor};
 use crate::number::{Dual, Enclosure, Field, Rational, RationalFunction, Real};
 use crate::paper::operations::{CoastalRadar, Sums};
 use crate::paper::specification::{Specification, sustika2015 as specification};
@@ -14,7 +14,7 @@ use crate::rule::moment::wrong_moment_of_degree;
 use crate::rule::unscented::{Parameters, unscented};
 use crate::rule::{ExactRule, Rule};
 use crate::statistics::estimate::figure;
-use nalgebra::{Matrix2, Matrix6, SMatrix, SVector, Vector2, Vector6};
+use nalgebra::{Const, Matrix2, Matrix6, SMatrix, SVector, U2, U6, Vector2, Vector6};
 use num_traits::Zero;
 use std::fmt::Write;
 
@@ -24,11 +24,11 @@ fn range_and_bearing<T: Real>(state: &Vector6<T>) -> Vector2<T> {
 }
 
 /// The paper's radar.
-fn polar<T: Real>() -> Measurement<T, 6, 2> {
-    Measurement::Polar {
-        components: [PolarComponent::Range, PolarComponent::Bearing],
+fn polar<T: Real>() -> Sensor<T, U6, U2> {
+    Sensor::Polar {
+        components: vec![PolarComponent::Range, PolarComponent::Bearing],
         position: [0, 1],
-        sensor: [T::zero(), T::zero()],
+        location: [T::zero(), T::zero()],
     }
 }
 
@@ -114,14 +114,14 @@ pub fn difficult_jacobian() -> Judgement {
 }
 
 /// The two measured values of a position and of others on the line through it and the radar, X = (3, 4): at X, −X, the radar, 2X.
-fn on_a_line(measurement: &Measurement<Enclosure, 6, 2>) -> [Vector2<Enclosure>; 4] {
+fn on_a_line(measurement: &Sensor<Enclosure, U6, U2>) -> [Vector2<Enclosure>; 4] {
     let state = at(&Enclosure::integer(3), &Enclosure::integer(4));
     [1, -1, 0, 2].map(|factor| measurement.of(&(&state * Enclosure::integer(factor))))
 }
 
 /// What HX would have, as far as a measurement has it: opposite first values at X and −X; with a constant too, their mean at the radar;
 /// and twice the second value at 2X. None where that is not decided.
-pub fn signs_of_linearity(measurement: &Measurement<Enclosure, 6, 2>) -> [Option<bool>; 3] {
+pub fn signs_of_linearity(measurement: &Sensor<Enclosure, U6, U2>) -> [Option<bool>; 3] {
     let differences = Enclosure::with_precision(BITS, || {
         let [here, opposite, nowhere, twice] = on_a_line(measurement);
         let two = || Enclosure::integer(2);
@@ -158,7 +158,7 @@ pub fn kalman_needs_modification() -> Judgement {
 /// Whether the points drawn from a mean and a covariance have these as their moments, for all of them: the mean and the square root of
 /// the covariance, whichever, are unknown.
 pub fn keeps_both_moments<const N: usize>(rule: &ExactRule) -> bool {
-    let Ok(rule) = Rule::<RationalFunction, N>::from_exact(rule) else {
+    let Ok(rule) = Rule::<RationalFunction, Const<N>>::from_exact(rule) else {
         return false;
     };
     let mean = SVector::<RationalFunction, N>::from_fn(|row, _| RationalFunction::unknown(&format!("m{row}")));

@@ -16,7 +16,7 @@ use crate::paper::simulation::{self, Filter, Simulation};
 use crate::paper::specification::Choices;
 use crate::statistics::consistency::{nees, nis};
 use crate::statistics::fit_error::{FitForm, position_fit_error};
-use nalgebra::{Vector2, Vector4, Vector6};
+use nalgebra::{U2, U6, Vector2, Vector4, Vector6};
 
 /// What the first measurement is used for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -61,7 +61,7 @@ impl Scenario {
     pub fn track(&self, contestant: &Contestant, draw: &Draw) -> Run {
         let mut run = Run::with_room_for(DURATION);
         let initial = self.setup.initial(&draw.measurements[0]);
-        let mut filter = Imm::new(contestant.problem.clone(), contestant.equations, &initial)
+        let mut filter = Imm::with_equations(contestant.problem.clone(), contestant.equations, &initial)
             .expect("the paper's problems are part of the program");
         let truth = &draw.truth[self.first_filtered()..];
         follow(
@@ -99,7 +99,7 @@ fn fit_error(form: FitForm, errors: &[Vector4<f64>], truth: &[Vector6<f64>]) -> 
 }
 
 /// Keeps what the statistics need of a step.
-fn record(run: &mut Run, step: &Step<f64, 6, 2>, truth: &Vector6<f64>) {
+fn record(run: &mut Run, step: &Step<f64, U6, U2>, truth: &Vector6<f64>) {
     let error = step.combined.mean - truth;
     run.errors.push(Vector4::new(error[0], error[2], error[1], error[3]));
     run.nees.push(nees(&step.combined, truth));

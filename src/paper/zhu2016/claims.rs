@@ -4,7 +4,7 @@
 //! same order; every judge computes its evidence and is called once in [`judge`]. Those that need no runs are in [`arithmetic`].
 
 use super::{arithmetic, quantity_of_row, scenario};
-use crate::imm::Equations;
+use crate::filter::Filter;
 use crate::model::motion::coordinated_turn;
 use crate::number::Rational;
 use crate::paper::Effort;
@@ -20,7 +20,7 @@ use crate::rule::{Rule, RuleName, fifth_degree, third_degree, unscented};
 use crate::statistics::estimate::figure;
 use crate::steady::gains;
 use crate::steady::mismatch::alpha_beta_lag;
-use nalgebra::Vector4;
+use nalgebra::{U4, Vector4};
 use std::fmt::Write;
 
 /// The positions of the contestants in the scenario; the last is the Kalman filter that the judges add.
@@ -102,8 +102,7 @@ pub fn with_kalman_filter() -> Result<Scenario, InvalidChoice> {
 fn kalman(contestant: &Contestant) -> Contestant {
     let mut kalman = contestant.clone();
     "IMM-Kalman".clone_into(&mut kalman.name);
-    kalman.problem.rule = None;
-    kalman.equations = Equations::kalman();
+    kalman.problem.filters = vec![Filter::kalman()];
     kalman.points = None;
     kalman
 }
@@ -452,8 +451,8 @@ pub fn printed_weight(s: &Specification, printed: &Experiment) -> Judgement {
         .map_or(Rational::new(0, 1), |rule| rule.sum_of_weights());
     let fifth = &printed.scenario.contestants[IMM5CKF];
     let mut contestant = fifth.clone();
-    let rule: Result<Rule<f64, 4>, _> = RuleName::FifthDegreePrinted.rule();
-    contestant.problem.rule = rule.ok();
+    let rule: Result<Rule<f64, U4>, _> = RuleName::FifthDegreePrinted.rule();
+    contestant.problem.filters = rule.into_iter().map(Filter::points).collect();
     let alone = Scenario {
         contestants: vec![contestant],
         ..printed.scenario.clone()

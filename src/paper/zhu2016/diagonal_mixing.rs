@@ -9,8 +9,9 @@
 
 use crate::gaussian::Gaussian;
 use crate::imm::Equations;
+use crate::matrix::{Holds, Shapes, rows};
 use crate::number::{Field, Real};
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{Dim, OMatrix, OVector, U1};
 
 /// Linear-minimum-variance weights of uncorrelated estimates, component by component.
 ///
@@ -34,8 +35,11 @@ use nalgebra::{SMatrix, SVector};
 /// ```
 ///
 /// Evidence: `diagonal_weights_sum_to_one_in_each_component` (symbolic).
-pub fn diagonal_weight<T: Field, const N: usize>(estimates: &[Gaussian<T, N>], i: usize) -> SVector<T, N> {
-    SVector::from_fn(|l, _| {
+pub fn diagonal_weight<T: Field, N: Dim>(estimates: &[Gaussian<T, N>], i: usize) -> OVector<T, N>
+where
+    Shapes: Holds<N>,
+{
+    OVector::from_fn_generic(rows(&estimates[i].mean), U1, |l, _| {
         let mut sum = T::zero();
         for estimate in estimates {
             sum += T::one() / estimate.covariance[(l, l)].clone();
@@ -58,8 +62,11 @@ pub fn diagonal_weight<T: Field, const N: usize>(estimates: &[Gaussian<T, N>], i
 /// // ¾ · 0 + ¼ · 4
 /// assert_eq!(mixed_mean(&[at(0, 1), at(4, 3)]), vector![Rational::integer(1)]);
 /// ```
-pub fn mixed_mean<T: Field, const N: usize>(estimates: &[Gaussian<T, N>]) -> SVector<T, N> {
-    let mut sum = SVector::zeros();
+pub fn mixed_mean<T: Field, N: Dim>(estimates: &[Gaussian<T, N>]) -> OVector<T, N>
+where
+    Shapes: Holds<N>,
+{
+    let mut sum = OVector::zeros_generic(rows(&estimates[0].mean), U1);
     for (i, estimate) in estimates.iter().enumerate() {
         sum += diagonal_weight(estimates, i).component_mul(&estimate.mean);
     }
@@ -82,11 +89,11 @@ pub fn mixed_mean<T: Field, const N: usize>(estimates: &[Gaussian<T, N>]) -> SVe
 /// // ½ · (1 + 2²) + ½ · (1 + 2²); as a double √½ · √½ is one unit in the last place above ½
 /// assert!((mixed[0] - 5.0).abs() < 8.0 * f64::EPSILON);
 /// ```
-pub fn mixed_covariance<T: Real, const N: usize>(
-    estimates: &[Gaussian<T, N>],
-    mean: &SVector<T, N>,
-) -> SMatrix<T, N, N> {
-    let mut sum = SMatrix::<T, N, N>::zeros();
+pub fn mixed_covariance<T: Real, N: Dim>(estimates: &[Gaussian<T, N>], mean: &OVector<T, N>) -> OMatrix<T, N, N>
+where
+    Shapes: Holds<N>,
+{
+    let mut sum = OMatrix::zeros_generic(rows(mean), rows(mean));
     for (i, estimate) in estimates.iter().enumerate() {
         let root = diagonal_weight(estimates, i).map(|weight| weight.sqrt());
         let deviation = &estimate.mean - mean;
@@ -98,10 +105,13 @@ pub fn mixed_covariance<T: Real, const N: usize>(
 
 /// The table of the stand-in: Kalman filters whose inputs are mixed with diagonal weights, and the mode probabilities of
 /// zhu2016 (58) for the output.
-pub fn equations<T: Real, const N: usize, const M: usize>() -> Equations<T, N, M> {
+pub fn equations<T: Real, N: Dim, M: Dim>() -> Equations<T, N, M>
+where
+    Shapes: Holds<N, M>,
+{
     Equations {
         mixed_mean: |_, previous, _, _| mixed_mean(&previous.updated),
         mixed_covariance: |_, previous, now, j| mixed_covariance(&previous.updated, &now.mixed[j].mean),
-        ..Equations::kalman()
+        ..Equations::standard()
     }
 }

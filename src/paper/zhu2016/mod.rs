@@ -14,14 +14,14 @@
 //! - 2.1 prediction, (14)-(26): [`propagated_point`](crate::filter::cubature::propagated_point),
 //!   [`weighted_mean`](crate::filter::cubature::weighted_mean), [`raw_covariance`](crate::filter::raw::raw_covariance), of which (24)
 //!   lacks two terms; the filter has the equal [`weighted_covariance`](crate::filter::cubature::weighted_covariance)
-//! - 2.2 measured points, (27)-(44): the same points of the prediction, [`Measurement::of`](crate::model::Measurement::of),
-//!   [`Measurement::mean`](crate::model::Measurement::mean)
+//! - 2.2 measured points, (27)-(44): the same points of the prediction, [`Sensor::of`](crate::model::Sensor::of),
+//!   [`Sensor::mean`](crate::model::Sensor::mean)
 //! - 2.2 update, (45)-(53): [`innovation_covariance`](crate::filter::cubature::innovation_covariance),
 //!   [`cross_covariance`](crate::filter::cubature::cross_covariance), [`gain`](crate::filter::update::gain),
 //!   [`updated_mean`](crate::filter::update::updated_mean), [`updated_covariance`](crate::filter::update::updated_covariance)
 //! - 3.1 input integration, (54)-(56): [`mixing_probability`](crate::imm::probability::mixing_probability),
 //!   [`mixture_mean`](crate::gaussian::mixture_mean), [`mixture_covariance`](crate::gaussian::mixture_covariance)
-//! - 3.2 filtering, as (1)-(53): [`Equations::cubature`](crate::imm::Equations::cubature)
+//! - 3.2 filtering, as (1)-(53): [`Filter::points`](crate::filter::Filter::points)
 //! - 3.3 model probabilities, (57), (58): [`log_density`](crate::gaussian::log_density),
 //!   [`mode_probability`](crate::imm::probability::mode_probability); as printed in [`imm::printed`](crate::imm::printed)
 //! - 3.4 output integration, (59), (60): the mixture again
@@ -43,13 +43,14 @@ use super::comparison::Quantity;
 use super::scenario::{Contestant, Motion, Scenario};
 use super::simulation::Average;
 use super::specification::{Choices, InvalidChoice, zhu2016 as specification};
-use crate::imm::{Equations, Problem};
-use crate::model::motion::{Mode, acceleration_input, acceleration_noise};
-use crate::model::{Measurement, PolarComponent};
+use crate::filter::Filter;
+use crate::imm::{Equations, Interaction, Problem};
+use crate::model::motion::{self, Mode, acceleration_input, acceleration_noise};
+use crate::model::{PolarComponent, Sensor};
 use crate::number::Rational;
 use crate::rule::RuleName;
 use crate::rule::unscented::Parameters;
-use nalgebra::{Matrix4, Vector2, Vector4, matrix};
+use nalgebra::{Matrix4, U2, U4, Vector2, Vector4, matrix};
 
 /// T, s.
 pub const INTERVAL: f64 = 1.0;
@@ -129,7 +130,7 @@ pub fn scenario(choices: &Choices) -> Result<Scenario, InvalidChoice> {
     specification.check(choices)?;
     let chosen = |parameter| specification.chosen(choices, parameter);
 
-    let (measurement, measurement_deviations) = measurement(chosen("measurement")?);
+    let (sensor, measurement_deviations) = sensor(chosen("measurement")?);
     let noise = match chosen("filter-noise")? {
         "tenth" => ACCELERATION_VARIANCE / 10.0,
         "hundredth" => ACCELERATION_VARIANCE / 100.0,
@@ -162,7 +163,7 @@ pub fn scenario(choices: &Choices) -> Result<Scenario, InvalidChoice> {
         _ => Parameters::for_gaussian(4),
     };
     let build = Builder {
-        measurement: measurement.clone(),
+        sensor: sensor.clone(),
         measurement_deviations,
         noise,
         initial_probabilities,
@@ -189,7 +190,7 @@ pub fn scenario(choices: &Choices) -> Result<Scenario, InvalidChoice> {
         draws_initial_estimate: chosen("initial-estimate")? == "drawn",
         schedule: schedule(schedule_shift),
         truth_noise_root,
-        measurement,
+        sensor,
         measurement_deviations,
         paired: chosen("pairing")? == "paired",
         average: match chosen("table-average")? {
@@ -214,12 +215,12 @@ fn schedule(shift: usize) -> Vec<Motion> {
 
 /// The measurement and the standard deviations of its noise. "r = diag(20, 0.1)" reads like a range and a bearing, which are the
 /// alternatives.
-fn measurement(name: &str) -> (Measurement<f64, 4, 2>, Vector2<f64>) {
-    let positions = Measurement::Linear(matrix![1.0, 0.0, 0.0, 0.0; 0.0, 0.0, 1.0, 0.0]);
-    let polar = Measurement::Polar {
-        components: [PolarComponent::Range, PolarComponent::Bearing],
+fn sensor(name: &str) -> (Sensor<f64, U4, U2>, Vector2<f64>) {
+    let positions = Sensor::Linear(matrix![1.0, 0.0, 0.0, 0.0; 0.0, 0.0, 1.0, 0.0]);
+    let polar = Sensor::Polar {
+        components: vec![PolarComponent::Range, PolarComponent::Bearing],
         position: [0, 2],
-        sensor: [0.0, 0.0],
+        location: [0.0, 0.0],
     };
     let [in_x, in_y] = MEASUREMENT_VARIANCES;
     let (measurement, variances) = match name {
@@ -241,31 +242,31 @@ fn truth_noise_root() -> Matrix4<f64> {
 
 /// What the contestants have in common.
 struct Builder {
-    measurement: Measurement<f64, 4, 2>,
+    sensor: Sensor<f64, U4, U2>,
     measurement_deviations: Vector2<f64>,
     noise: f64,
     initial_probabilities: Vec<f64>,
 }
 
 impl Builder {
-    fn problem(&self, motions: &[Motion], noise: f64) -> Problem<f64, 4, 2> {
+    fn problem(&self, motions: &[Motion], noise: f64) -> Problem<f64, U4, U2> {
         let mode = |motion: &Motion| Mode {
             name: motion.name().to_owned(),
-            transition: motion.transition(TURN_RATE, INTERVAL),
+            motion: motion::Motion::Linear(motion.transition(TURN_RATE, INTERVAL)),
             noise: acceleration_noise(&noise, &INTERVAL),
         };
-        let transition = match motions {
+        let chain = match motions {
             [_] => vec![vec![1.0]],
             _ => TRANSITION.iter().map(|row| row.to_vec()).collect(),
         };
         let variances = self.measurement_deviations.map(|deviation| deviation * deviation);
         Problem {
             modes: motions.iter().map(mode).collect(),
-            transition,
-            measurement: self.measurement.clone(),
+            chain,
+            sensor: self.sensor.clone(),
             measurement_noise: nalgebra::Matrix2::from_diagonal(&variances),
-            rule: None,
-            fixed_gains: None,
+            filters: vec![Filter::kalman()],
+            interaction: Interaction::Imm,
         }
     }
 
@@ -289,7 +290,7 @@ impl Builder {
     fn stand_in(&self, motions: &[Motion]) -> Contestant {
         let problem = self.problem(motions, self.noise);
         let name = "OMTM-IMM (stand-in)";
-        if let Measurement::Linear(_) = self.measurement {
+        if let Sensor::Linear(_) = self.sensor {
             return Contestant {
                 name: name.to_owned(),
                 problem,
@@ -303,7 +304,7 @@ impl Builder {
             equations: Equations {
                 mixed_mean: mixing.mixed_mean,
                 mixed_covariance: mixing.mixed_covariance,
-                ..Equations::cubature()
+                ..Equations::standard()
             },
             ..self.imm(name, motions, &RuleName::ThirdDegree)
         }

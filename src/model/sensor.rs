@@ -7,13 +7,15 @@
 //! state or point ─ of ─▶ Z          weights, Z, centre ─ mean ─▶ ẑ          z, ẑ ─ difference ─▶ ν = z − ẑ, angles wrapped
 //! ```
 //!
-//! A converted measurement ([`Measurement::Converted`]) is linear once it has become a position; how it does is in
-//! [`crate::filter::converted`].
+//! Range and bearing that a filter converts are a position to it: [`position_matrix`], and [`crate::filter::converted`].
 
 use super::angle::wrap;
-use super::conversion::Conversion;
-use crate::number::Real;
-use nalgebra::{SMatrix, SVector};
+use super::function::Function;
+use super::space::Space;
+use crate::matrix::{Holds, Shapes, rows};
+use crate::number::{Field, Real};
+use nalgebra::{Dim, OMatrix, OVector, U1};
+use std::sync::Arc;
 
 /// A component of a polar measurement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,16 +28,19 @@ pub enum PolarComponent {
 
 /// The function h of the measurement z = h(x) + v, v ~ N(0, R).
 #[derive(Debug, Clone, PartialEq)]
-pub enum Measurement<T, const N: usize, const M: usize> {
+pub enum Sensor<T: Field, N: Dim, M: Dim>
+where
+    Shapes: Holds<N, M>,
+{
     /// A linear measurement — zhu2016 (62): h(x) = H x.
     ///
     /// Example: of [x, ẋ, y, ẏ] the position is seen.
     ///
     /// ```
-    /// use immaculate::model::Measurement;
+    /// use immaculate::model::Sensor;
     /// use nalgebra::{matrix, vector};
     ///
-    /// let position = Measurement::Linear(matrix![1.0, 0.0, 0.0, 0.0; 0.0, 0.0, 1.0, 0.0]);
+    /// let position = Sensor::Linear(matrix![1.0, 0.0, 0.0, 0.0; 0.0, 0.0, 1.0, 0.0]);
     /// assert_eq!(position.of(&vector![3.0, 7.0, 4.0, 8.0]), vector![3.0, 4.0]);
     /// ```
     ///
@@ -43,56 +48,72 @@ pub enum Measurement<T, const N: usize, const M: usize> {
     /// and its covariance.
     ///
     /// Evidence: `printed_measurement_adds_noise_to_the_matrix`.
-    Linear(SMatrix<T, M, N>),
+    Linear(OMatrix<T, M, N>),
     /// A measurement in polar coordinates — sustika2015 (3), liu2017 (31): r = √(x² + y²), θ = tan⁻¹(y/x).
     ///
     /// Example: a target 3 m east and 4 m north of the sensor is 5 m away.
     ///
     /// ```
-    /// use immaculate::model::{Measurement, PolarComponent};
+    /// use immaculate::model::{Sensor, PolarComponent};
     /// use nalgebra::vector;
     ///
-    /// let range = Measurement::Polar { components: [PolarComponent::Range], position: [0, 2], sensor: [100.0, 0.0] };
+    /// let range = Sensor::Polar { components: vec![PolarComponent::Range], position: [0, 2], location: [100.0, 0.0] };
     /// assert_eq!(range.of(&vector![103.0, 7.0, 4.0, 8.0]), vector![5.0]); // √(3² + 4²)
     /// ```
     ///
     /// Errata: tan⁻¹(y/x) confuses opposite directions; it is atan2(y, x) here.
     Polar {
         /// What each component of z is.
-        components: [PolarComponent; M],
+        components: Vec<PolarComponent>,
         /// Which entries of the state are the position (x, y).
         position: [usize; 2],
         /// Where the sensor stands, in metres.
-        sensor: [T; 2],
+        location: [T; 2],
     },
-    /// Range and bearing that the filter turns into a position before it uses them, [`converted`](crate::filter::converted). To the filter
-    /// the position is what is measured: h(x) = H x, where H takes the position out of the state.
-    Converted {
-        /// What each component of z is: a range and a bearing, in either order.
-        components: [PolarComponent; M],
-        /// Which entries of the state are the position (x, y).
-        position: [usize; 2],
-        /// Where the sensor stands, in metres.
-        sensor: [T; 2],
-        /// How.
-        conversion: Conversion,
+    /// Any function of the state; filters that draw points have no other need.
+    ///
+    /// Example: how fast the distance grows.
+    ///
+    /// ```
+    /// use immaculate::model::{Sensor, function::Function, space::{Component, Space}};
+    /// use nalgebra::{U1, vector};
+    ///
+    /// let text = "(x*vx + y*vy)/hypot(x, y)";
+    /// let function = Function::of_formulas(&["x", "vx", "y", "vy"], &[], &[], &[], &[("range_rate", text)])?;
+    /// let space = Space::new(vec![Component::number("range_rate", "m/s")])?;
+    /// let doppler = Sensor::<f64, _, U1>::Function { function: function.into(), space: space.into(), given: vec![] };
+    /// assert_eq!(doppler.of(&vector![3.0, 5.0, 4.0, -5.0]), vector![-1.0]); // (3 · 5 − 4 · 5)/5
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// Evidence: `formulas_of_range_and_bearing_are_the_native_ones` (models_in_filters).
+    Function {
+        /// h.
+        function: Arc<Function>,
+        /// What the components of z are, and which of them are angles.
+        space: Arc<Space>,
+        /// The values of what the function is given besides the state, [`Function::given`].
+        given: Vec<T>,
     },
 }
 
-impl<T: Real, const N: usize, const M: usize> Measurement<T, N, M> {
+impl<T: Real, N: Dim, M: Dim> Sensor<T, N, M>
+where
+    Shapes: Holds<N, M>,
+{
     /// The measurement of a state without noise, h(x) — sustika2015 (2), (3), (30), zhu2016 (35)-(41), (62), liu2017 (1), (31).
     ///
     /// Example: a target to the south-west, whose bearing is −135°. The printed tan⁻¹(y/x) says 45°, the opposite direction.
     ///
     /// ```
-    /// use immaculate::model::{Measurement, PolarComponent};
+    /// use immaculate::model::{Sensor, PolarComponent};
     /// use nalgebra::vector;
     /// use std::f64::consts::PI;
     ///
-    /// let radar = Measurement::Polar {
-    ///     components: [PolarComponent::Range, PolarComponent::Bearing],
+    /// let radar = Sensor::Polar {
+    ///     components: vec![PolarComponent::Range, PolarComponent::Bearing],
     ///     position: [0, 1],
-    ///     sensor: [0.0, 0.0],
+    ///     location: [0.0, 0.0],
     /// };
     /// assert_eq!(radar.of(&vector![-1.0, -1.0]), vector![2.0_f64.sqrt(), -0.75 * PI]);
     /// assert_eq!((-1.0_f64 / -1.0).atan(), 0.25 * PI);
@@ -100,30 +121,42 @@ impl<T: Real, const N: usize, const M: usize> Measurement<T, N, M> {
     ///
     /// Evidence: `a_range_bearing_measurement_is_the_polar_form_of_the_position` (property),
     /// `plain_arctangent_confuses_opposite_quadrants`, `printed_arctangent_converts_the_first_point_to_the_opposite_one`.
-    pub fn of(&self, state: &SVector<T, N>) -> SVector<T, M> {
+    pub fn of(&self, state: &OVector<T, N>) -> OVector<T, M> {
         match self {
             Self::Linear(h) => h * state,
             Self::Polar {
                 components,
                 position,
-                sensor,
+                location,
             } => {
-                let x = state[position[0]].clone() - sensor[0].clone();
-                let y = state[position[1]].clone() - sensor[1].clone();
-                SVector::from_fn(|row, _| match components[row] {
+                let x = state[position[0]].clone() - location[0].clone();
+                let y = state[position[1]].clone() - location[1].clone();
+                OVector::from_fn_generic(M::from_usize(components.len()), U1, |row, _| match components[row] {
                     PolarComponent::Range => (x.clone() * x.clone() + y.clone() * y.clone()).sqrt(),
                     PolarComponent::Bearing => y.atan2(&x),
                 })
             }
-            Self::Converted { .. } => self.matrix() * state,
+            Self::Function { function, given, .. } => {
+                let values = function.at(state.as_slice(), given);
+                OVector::from_iterator_generic(self.dimension(), U1, values)
+            }
         }
     }
 
-    /// What the sensor reports as component: a range, a bearing, or, of a linear measurement, neither.
+    /// The number of components of z, as the type of that side.
+    pub fn dimension(&self) -> M {
+        match self {
+            Self::Linear(h) => rows(h),
+            Self::Polar { components, .. } => M::from_usize(components.len()),
+            Self::Function { function, .. } => M::from_usize(function.dimension()),
+        }
+    }
+
+    /// What the sensor reports as component: a range, a bearing, or, of a linear measurement or a function, neither.
     pub fn reports(&self, component: usize) -> Option<PolarComponent> {
         match self {
-            Self::Linear(_) => None,
-            Self::Polar { components, .. } | Self::Converted { components, .. } => Some(components[component]),
+            Self::Linear(_) | Self::Function { .. } => None,
+            Self::Polar { components, .. } => Some(components[component]),
         }
     }
 
@@ -134,45 +167,27 @@ impl<T: Real, const N: usize, const M: usize> Measurement<T, N, M> {
     /// Example: a radar that reports the bearing first, and one without a range.
     ///
     /// ```
-    /// use immaculate::model::{Measurement, PolarComponent::{Bearing, Range}};
+    /// use immaculate::model::{Sensor, PolarComponent::{Bearing, Range}};
     ///
-    /// let (position, sensor) = ([0, 1], [0.0, 0.0]);
-    /// let radar = Measurement::<f64, 2, 2>::Polar { components: [Bearing, Range], position, sensor };
+    /// let (position, location) = ([0, 1], [0.0, 0.0]);
+    /// let radar = Sensor::<f64, U2, U2>::Polar { components: vec![Bearing, Range], position, location };
     /// assert_eq!(radar.range_and_bearing(), Some([1, 0]));
-    /// let bearings = Measurement::<f64, 2, 2>::Polar { components: [Bearing, Bearing], position, sensor };
+    /// let bearings = Sensor::<f64, U2, U2>::Polar { components: vec![Bearing, Bearing], position, location };
     /// assert_eq!(bearings.range_and_bearing(), None);
     /// ```
     pub fn range_and_bearing(&self) -> Option<[usize; 2]> {
-        let place = |wanted| (0..M).find(|&row| self.reports(row) == Some(wanted));
+        let m = self.dimension().value();
+        let place = |wanted| (0..m).find(|&row| self.reports(row) == Some(wanted));
         let both = place(PolarComponent::Range).zip(place(PolarComponent::Bearing));
-        both.filter(|_| M == 2).map(|(range, bearing)| [range, bearing])
+        both.filter(|_| m == 2).map(|(range, bearing)| [range, bearing])
     }
 
-    /// Whether the filter converts it to a position.
-    pub fn is_converted(&self) -> bool {
-        matches!(self, Self::Converted { .. })
-    }
-
-    /// Whether a component of what the filter uses is an angle; a converted measurement has none.
+    /// Whether a component is an angle.
     pub fn is_angle(&self, component: usize) -> bool {
         match self {
-            Self::Linear(_) | Self::Converted { .. } => false,
+            Self::Linear(_) => false,
             Self::Polar { components, .. } => components[component] == PolarComponent::Bearing,
-        }
-    }
-
-    /// The matrix H of a linear or converted measurement; of another the undecided one, so that nothing that needs H has an answer.
-    pub fn matrix(&self) -> SMatrix<T, M, N> {
-        match self {
-            Self::Linear(h) => h.clone(),
-            Self::Polar { .. } => SMatrix::from_fn(|_, _| T::undecided()),
-            Self::Converted { position, .. } => SMatrix::from_fn(|row, column| {
-                if position.get(row) == Some(&column) {
-                    T::one()
-                } else {
-                    T::zero()
-                }
-            }),
+            Self::Function { space, .. } => space.is_angle(component),
         }
     }
 
@@ -184,20 +199,20 @@ impl<T: Real, const N: usize, const M: usize> Measurement<T, N, M> {
     /// apart.
     ///
     /// ```
-    /// use immaculate::model::{Measurement, PolarComponent};
+    /// use immaculate::model::{Sensor, PolarComponent};
     /// use nalgebra::vector;
     /// use std::f64::consts::PI;
     ///
-    /// let bearing = Measurement::<f64, 2, 1>::Polar { components: [PolarComponent::Bearing], position: [0, 1], sensor: [0.0, 0.0] };
+    /// let bearing = Sensor::<f64, U2, U1>::Polar { components: vec![PolarComponent::Bearing], position: [0, 1], location: [0.0, 0.0] };
     /// let (z, predicted) = (vector![0.75 * PI], vector![-0.75 * PI]);
     /// assert_eq!(bearing.difference(&z, &predicted), vector![-0.5 * PI]);
     /// assert_eq!(z - predicted, vector![1.5 * PI]);
     /// ```
     ///
     /// Evidence: `mirroring_the_scene_mirrors_the_answer`, `the_answer_does_not_depend_on_where_the_bearing_is_cut` (property).
-    pub fn difference(&self, a: &SVector<T, M>, b: &SVector<T, M>) -> SVector<T, M> {
+    pub fn difference(&self, a: &OVector<T, M>, b: &OVector<T, M>) -> OVector<T, M> {
         let mut difference = a - b;
-        for component in 0..M {
+        for component in 0..difference.len() {
             if self.is_angle(component) {
                 difference[component] = wrap(difference[component].clone());
             }
@@ -222,11 +237,11 @@ impl<T: Real, const N: usize, const M: usize> Measurement<T, N, M> {
     /// Example: the mean of 135° and −135°, seen from the centre at 180°, is 180°. As plain numbers it is 0°, the opposite direction.
     ///
     /// ```
-    /// use immaculate::model::{Measurement, PolarComponent};
+    /// use immaculate::model::{Sensor, PolarComponent};
     /// use nalgebra::vector;
     /// use std::f64::consts::PI;
     ///
-    /// let bearing = Measurement::<f64, 2, 1>::Polar { components: [PolarComponent::Bearing], position: [0, 1], sensor: [0.0, 0.0] };
+    /// let bearing = Sensor::<f64, U2, U1>::Polar { components: vec![PolarComponent::Bearing], position: [0, 1], location: [0.0, 0.0] };
     /// let values = [vector![0.75 * PI], vector![-0.75 * PI]];
     /// // π + ½ · (−π/4) + ½ · (+π/4)
     /// assert_eq!(bearing.mean(&[0.5, 0.5], &values, &vector![PI]), vector![PI]);
@@ -234,10 +249,10 @@ impl<T: Real, const N: usize, const M: usize> Measurement<T, N, M> {
     /// ```
     ///
     /// Evidence: `the_answer_does_not_depend_on_where_the_bearing_is_cut` (property).
-    pub fn mean(&self, weights: &[T], values: &[SVector<T, M>], centre: &SVector<T, M>) -> SVector<T, M> {
-        let mut mean = SVector::zeros();
+    pub fn mean(&self, weights: &[T], values: &[OVector<T, M>], centre: &OVector<T, M>) -> OVector<T, M> {
+        let mut mean = OVector::zeros_generic(rows(centre), U1);
         for (weight, value) in weights.iter().zip(values) {
-            for component in 0..M {
+            for component in 0..mean.len() {
                 mean[component] += weight.clone()
                     * if self.is_angle(component) {
                         wrap(value[component].clone() - centre[component].clone())
@@ -246,11 +261,36 @@ impl<T: Real, const N: usize, const M: usize> Measurement<T, N, M> {
                     };
             }
         }
-        for component in 0..M {
+        for component in 0..mean.len() {
             if self.is_angle(component) {
                 mean[component] += centre[component].clone();
             }
         }
         mean
     }
+}
+
+/// The matrix that takes the position out of the state, M × N: h(x) = H x of a filter that converts range and bearing.
+///
+/// Source: sustika2015, section 3.1.
+///
+/// Example: x and y of a state [x, ẋ, y, ẏ].
+///
+/// ```
+/// use immaculate::model::sensor::position_matrix;
+/// use nalgebra::{U2, U4, matrix};
+///
+/// assert_eq!(position_matrix(&[0, 2], U2, U4), matrix![1.0, 0.0, 0.0, 0.0; 0.0, 0.0, 1.0, 0.0]);
+/// ```
+pub fn position_matrix<T: Field, N: Dim, M: Dim>(position: &[usize; 2], m: M, n: N) -> OMatrix<T, M, N>
+where
+    Shapes: Holds<N, M>,
+{
+    OMatrix::from_fn_generic(m, n, |row, column| {
+        if position.get(row) == Some(&column) {
+            T::one()
+        } else {
+            T::zero()
+        }
+    })
 }
