@@ -352,6 +352,7 @@ fn change(problem: &mut ProblemFile, what: usize, at: Index, number: f64) {
         4 => match &mut problem.measurement {
             MeasurementFile::Linear { matrix } => any(matrix),
             MeasurementFile::RangeBearing { sensor, .. } => sensor[at.index(2)] = number,
+            MeasurementFile::Formulas { .. } | MeasurementFile::Model { .. } => {}
         },
         _ => {
             if let Some(z) = problem.measurements[0].z.as_mut() {

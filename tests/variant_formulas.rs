@@ -30,6 +30,7 @@ type Scene = Setup<f64>;
 type Row = (&'static str, Quantity, fn(At, usize) -> Vec<f64>);
 
 use Quantity as Q;
+use std::collections::BTreeMap;
 
 // The laws
 
@@ -1214,6 +1215,7 @@ fn kalman() -> Scene {
     };
     let estimate = |(mean, covariance)| Gaussian { mean, covariance };
     Setup {
+        changes: BTreeMap::new(),
         problem: Problem {
             modes: modes.map(mode).to_vec(),
             chain: vec![vec![0.7, 0.2, 0.1], vec![0.15, 0.6, 0.25], vec![0.05, 0.4, 0.55]],
@@ -1314,6 +1316,7 @@ fn fixed(interaction: Interaction) -> Scene {
 /// One state, one measurement, one mode.
 fn scalar() -> Scene {
     Setup {
+        changes: BTreeMap::new(),
         problem: Problem {
             modes: vec![Mode {
                 name: "walk".into(),

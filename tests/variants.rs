@@ -20,6 +20,7 @@ use immaculate::oracle::trace::Trace;
 use immaculate::oracle::variant::{Applies, Kind, Variant, apply, catalogue, find, read};
 use immaculate::rule::{Rule, RuleName, unscented::unscented_in};
 use nalgebra::{DMatrix, DVector, Dyn, dmatrix, dvector};
+use std::collections::BTreeMap;
 use std::collections::BTreeSet;
 
 /// What counts as another value, in parts of the quantity's size: far above the rounding of these problems (the greatest is 10⁻¹¹, of a
@@ -703,6 +704,7 @@ fn generic(n: usize, modes: usize, sensor: Sensor<f64, Dyn, Dyn>, filter: Filter
     assert_eq!(problem.check(&initial).err(), None);
     let measured = |k: usize| Some(DVector::from_fn(m, |row, _| 8.0 + 5.0 * value(600 + 10 * k + row)));
     Setup {
+        changes: BTreeMap::new(),
         problem,
         equations: Equations::standard(),
         initial,
@@ -754,6 +756,7 @@ fn on_enclosures(setup: &Setup<f64>) -> Setup<Enclosure> {
         Sensor::Function { .. } => unreachable!("no problem of this file has one"),
     };
     Setup {
+        changes: BTreeMap::new(),
         equations: Equations::standard(),
         problem: Problem {
             modes: modes.collect(),

@@ -225,6 +225,11 @@ where
         Ok(())
     }
 
+    /// As [`Imm::change`], with a problem that may be wrong on purpose.
+    pub(crate) fn change_unchecked(&mut self, problem: &Problem<T, N, M>) {
+        self.problem.clone_from(problem);
+    }
+
     /// One step of the cycle, with a measurement or without a detection.
     ///
     /// # Errors

@@ -54,6 +54,7 @@
 //! ```
 
 pub mod answer;
+mod bound;
 pub mod case;
 pub mod certify;
 pub mod check;
@@ -63,6 +64,7 @@ pub mod flags;
 pub mod folder;
 pub mod invalid;
 pub mod judge;
+pub mod models;
 pub mod noise;
 pub mod problem;
 pub mod process;
@@ -70,6 +72,7 @@ pub mod run;
 pub mod scale;
 pub mod schema;
 pub mod setup;
+mod steps;
 pub mod subject;
 pub mod trace;
 mod unreadable;

@@ -1,17 +1,23 @@
 //! The problem file: what a case gives to a filter, read, checked and put into any number system.
 //!
-//! After this file the reader knows the format `immaculate-problem/1` from the code's side (`spec/formats.md` is its description). What
-//! must be true of a file is in `well_formed`.
+//! After this file the reader knows the formats `immaculate-problem/1` and `/2` from the code's side (`spec/formats.md` is their
+//! description). Format 1 is format 2 without what [`super::models`] adds. What must be true of a file is in `well_formed`.
 
 use super::invalid::{Class, Invalid};
+use super::models::{ComponentFile, ModeKeys, ModeModels, Parameters};
 use super::trace::Dimensions;
 use super::unreadable;
 use crate::imm::{Needs, Quantity};
+use crate::model::space::Kind;
 use schemars::JsonSchema;
+use serde::de::IgnoredAny;
 use serde::{Deserialize, Deserializer, Serialize};
 
-/// The format of problem files.
+/// The format of the published problems: motions and measurements are matrices, or range and bearing.
 pub const FORMAT: &str = "immaculate-problem/1";
+
+/// The format in which they may be formulas and named models, too, and may change from step to step.
+pub const FORMAT_2: &str = "immaculate-problem/2";
 
 /// The rules of cubature filters. What a paper prints wrongly is no rule of a problem.
 pub const RULES: [&str; 7] = [
@@ -37,19 +43,29 @@ pub type Rows = Vec<Vec<f64>>;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ProblemFile {
-    /// `immaculate-problem/1`.
+    /// `immaculate-problem/1` or `immaculate-problem/2`.
     pub format: String,
     /// The name of the case; never changed and never used again.
     pub id: String,
     /// What the case is for.
+    #[serde(default)]
     pub about: String,
     /// What the case is for, in words of the list that `immaculate cases list` knows.
+    #[serde(default)]
     pub flags: Vec<String>,
-    /// The names of the n entries of the state.
-    pub state: Vec<String>,
+    /// The names of the n entries of the state; in format 2 perhaps with their units.
+    pub state: Vec<ComponentFile>,
     /// Their units.
+    #[serde(default)]
     pub units: Vec<String>,
+    /// Names with numbers, known in all formulas; `T` is the length of a step. Format 2.
+    #[serde(default, skip_serializing_if = "Parameters::is_empty")]
+    pub parameters: Parameters,
+    /// Names for formulas: each a name and a formula of what stands before it, known in all formulas. Format 2.
+    #[serde(default, rename = "let", skip_serializing_if = "Vec::is_empty")]
+    pub definitions: Vec<[String; 2]>,
     /// The modes, at least one.
+    #[schemars(with = "Vec<ModeKeys>")]
     pub modes: Vec<ModeFile>,
     /// What the sensor sees.
     pub measurement: MeasurementFile,
@@ -63,23 +79,24 @@ pub struct ProblemFile {
     /// The estimate at step 0, a posterior.
     pub initial: InitialFile,
     /// The choices that the papers leave open.
+    #[serde(default)]
     pub conventions: Conventions,
     /// One entry a step: 1, 2, 3, …
     pub measurements: Vec<MeasurementAt>,
 }
 
 /// A mode.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(try_from = "ModeKeys", into = "ModeKeys")]
 pub struct ModeFile {
     /// Its name.
     pub name: String,
-    /// Transition matrix, n × n.
-    #[serde(rename = "F")]
+    /// Transition matrix, n × n; empty where the motion is given otherwise.
     pub transition: Rows,
-    /// Covariance of the process noise, n × n.
-    #[serde(rename = "Q")]
+    /// Covariance of the process noise, n × n; empty where it is given otherwise.
     pub noise: Rows,
+    /// What format 2 adds.
+    pub models: ModeModels,
 }
 
 /// What the sensor sees.
@@ -100,6 +117,21 @@ pub enum MeasurementFile {
         position: [usize; 2],
         /// Where the sensor stands.
         sensor: [f64; 2],
+    },
+    /// Formulas of the state. Format 2.
+    Formulas {
+        /// What each entry of z is.
+        z: Vec<ComponentFile>,
+        /// One formula an entry of z.
+        h: Vec<String>,
+    },
+    /// A named model. Format 2.
+    Model {
+        /// Its name.
+        model: String,
+        /// Its parameters.
+        #[serde(default, skip_serializing_if = "Parameters::is_empty")]
+        parameters: Parameters,
     },
 }
 
@@ -211,8 +243,10 @@ pub struct EstimateFile {
 }
 
 /// A value that may be absent but, if its key is there, is not null.
-fn if_there_at_all<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Rows>, D::Error> {
-    Rows::deserialize(deserializer).map(Some)
+pub(super) fn if_there_at_all<'de, D: Deserializer<'de>, V: Deserialize<'de>>(
+    deserializer: D,
+) -> Result<Option<V>, D::Error> {
+    V::deserialize(deserializer).map(Some)
 }
 
 /// The choices that the papers leave open. The first four keys are always there; the others are where they make a difference.
@@ -264,8 +298,8 @@ impl Default for Conventions {
     }
 }
 
-/// The measurement of a step; `null` is a missed detection.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// The measurement of a step; `null` is a missed detection. What format 2 adds replaces the problem's for this step.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeasurementAt {
     /// The step, counted from 1.
@@ -274,6 +308,79 @@ pub struct MeasurementAt {
     #[serde(deserialize_with = "Option::deserialize")]
     #[schemars(required)]
     pub z: Option<Vec<f64>>,
+    /// The length of the step, T in formulas. Format 2.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "if_there_at_all",
+        rename = "T"
+    )]
+    #[schemars(with = "f64")]
+    pub interval: Option<f64>,
+    /// F of each mode. Format 2.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "if_there_at_all",
+        rename = "F"
+    )]
+    #[schemars(with = "Vec<Rows>")]
+    pub transitions: Option<Vec<Rows>>,
+    /// Q of each mode. Format 2.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "if_there_at_all",
+        rename = "Q"
+    )]
+    #[schemars(with = "Vec<Rows>")]
+    pub noises: Option<Vec<Rows>>,
+    /// H of a linear measurement. Format 2.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "if_there_at_all",
+        rename = "H"
+    )]
+    #[schemars(with = "Rows")]
+    pub matrix: Option<Rows>,
+    /// Covariance of the measurement's noise. Format 2.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "if_there_at_all",
+        rename = "R"
+    )]
+    #[schemars(with = "Rows")]
+    pub noise: Option<Rows>,
+    /// The Markov chain from the step before to this one. Format 2.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "if_there_at_all"
+    )]
+    #[schemars(with = "Rows")]
+    pub transition: Option<Rows>,
+}
+
+impl MeasurementAt {
+    /// Whether anything is another in this step than in the problem.
+    pub(super) fn has_changes(&self) -> bool {
+        self.first_change().is_some()
+    }
+
+    /// The first key that changes something.
+    pub(super) fn first_change(&self) -> Option<&'static str> {
+        let keys = [
+            ("T", self.interval.is_some()),
+            ("F", self.transitions.is_some()),
+            ("Q", self.noises.is_some()),
+            ("H", self.matrix.is_some()),
+            ("R", self.noise.is_some()),
+            ("transition", self.transition.is_some()),
+        ];
+        keys.into_iter().find(|(_, is_there)| *is_there).map(|(key, _)| key)
+    }
 }
 
 impl ProblemFile {
@@ -313,6 +420,9 @@ impl ProblemFile {
         deserializer
             .end()
             .map_err(|error| Invalid::new(Class::Format, "problem", error.to_string()))?;
+        if problem.format == FORMAT {
+            check_keys(text)?;
+        }
         Ok(problem)
     }
 
@@ -328,7 +438,11 @@ impl ProblemFile {
 
     /// Whether an entry of the measurement is an angle.
     pub fn is_bearing(&self, row: usize) -> bool {
-        self.is_component(row, "bearing")
+        match &self.measurement {
+            MeasurementFile::Formulas { z, .. } => z.get(row).is_some_and(|component| component.kind == Kind::Angle),
+            MeasurementFile::Model { .. } => self.measured_space().is_ok_and(|space| space.is_angle(row)),
+            _ => self.is_component(row, "bearing"),
+        }
     }
 
     /// Whether an entry of the measurement is a distance.
@@ -338,10 +452,36 @@ impl ProblemFile {
 
     fn is_component(&self, row: usize, name: &str) -> bool {
         match &self.measurement {
-            MeasurementFile::Linear { .. } => false,
             MeasurementFile::RangeBearing { components, .. } => {
                 components.get(row).is_some_and(|component| component == name)
             }
+            _ => false,
         }
+    }
+}
+
+/// The keys that may be absent in format 2.
+#[derive(Deserialize)]
+struct Keys {
+    about: Option<IgnoredAny>,
+    flags: Option<IgnoredAny>,
+    units: Option<IgnoredAny>,
+    conventions: Option<IgnoredAny>,
+}
+
+/// In format 1 every key is there.
+fn check_keys(text: &str) -> Result<(), Invalid> {
+    let Ok(keys) = serde_json::from_str::<Keys>(text) else {
+        return Ok(());
+    };
+    let all = [
+        ("about", keys.about),
+        ("flags", keys.flags),
+        ("units", keys.units),
+        ("conventions", keys.conventions),
+    ];
+    match all.into_iter().find(|(_, value)| value.is_none()) {
+        Some((key, _)) => Err(Invalid::new(Class::Format, format!("problem.{key}"), "is missing")),
+        None => Ok(()),
     }
 }

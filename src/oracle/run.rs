@@ -100,6 +100,9 @@ impl<T: Real> Setup<T> {
                 number,
                 triangle,
             };
+            if !self.changes.is_empty() {
+                filter.change_unchecked(self.changes.get(&(index + 1)).unwrap_or(&self.problem));
+            }
             let Err(failure) = filter.step_observed(measurement.as_ref(), &mut exchange) else {
                 continue;
             };

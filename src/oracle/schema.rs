@@ -11,7 +11,19 @@ use serde_json::{Map, Value, json};
 /// The schema of problem files.
 pub fn of_problems() -> Value {
     let mut schema = json!(schemars::schema_for!(ProblemFile));
-    schema["properties"]["format"]["const"] = json!(problem::FORMAT);
+    schema["properties"]["format"]["enum"] = json!([problem::FORMAT, problem::FORMAT_2]);
+    schema["anyOf"] = json!([
+        of_format_1(),
+        { "properties": { "format": { "const": problem::FORMAT_2 } } },
+    ]);
+    for key in KEYS_OF_FORMAT_1 {
+        if let Some(property) = schema["properties"][key].as_object_mut() {
+            property.remove("default");
+        }
+    }
+    // A motion is said in one of three ways.
+    schema["$defs"]["ModeFile"]["oneOf"] =
+        json!([{ "required": ["F"] }, { "required": ["f"] }, { "required": ["motion"] }]);
     // The key is required, and null says that there is no detection.
     schema["$defs"]["MeasurementAt"]["properties"]["z"]["type"] = json!(["array", "null"]);
     // Whether an estimate has a covariance depends on the filter.
@@ -25,6 +37,30 @@ pub fn of_problems() -> Value {
         ),
         with_estimates(&others, &json!({ "required": ["covariance"] })),
     ]);
+    schema
+}
+
+/// The keys that may be absent in format 2 only.
+const KEYS_OF_FORMAT_1: [&str; 4] = ["about", "flags", "units", "conventions"];
+
+/// What holds in format 1 only: more keys are required, and what is new is not there.
+fn of_format_1() -> Value {
+    let rows = json!({ "type": "array", "items": { "type": "array", "items": { "type": "number" } } });
+    let known = ["name", "F", "Q"].map(|key| (key.to_owned(), json!({})));
+    let mut mode = json!({ "properties": Map::from_iter(known), "additionalProperties": false });
+    mode["properties"]["Q"] = rows;
+    let step = json!({ "properties": { "step": {}, "z": {} }, "additionalProperties": false });
+    let mut schema = json!({ "required": KEYS_OF_FORMAT_1, "properties": {
+        "format": { "const": problem::FORMAT },
+        "state": { "items": { "type": "string" } },
+        "modes": { "items": mode },
+        "measurement": { "properties": { "kind": { "enum": ["linear", "range-bearing"] } } },
+        "measurements": { "items": step },
+    } });
+    // No value is of no type.
+    for key in ["parameters", "let"] {
+        schema["properties"][key] = json!({ "enum": [] });
+    }
     schema
 }
 

@@ -2,12 +2,14 @@
 //!
 //! After this file the reader knows how a problem file comes into any number system, each number of the file as it is, or perturbed.
 
+use super::bound::{Bound, Functions};
 use super::invalid::{Class, Invalid};
-use super::problem::{FilterFile, MeasurementFile, ProblemFile, Rows, UNMIXED};
+use super::problem::{FilterFile, MeasurementFile, ModeFile, ProblemFile, Rows, UNMIXED};
 use crate::filter::Filter;
 use crate::filter::fixed_gain::FixedGain;
 use crate::gaussian::Gaussian;
 use crate::imm::{Equations, Imm, Initial, Interaction, Problem};
+use crate::model::binding::STEP;
 use crate::model::conversion::UnknownConversion;
 use crate::model::motion::{Mode, Motion};
 use crate::model::{PolarComponent, Sensor};
@@ -28,6 +30,8 @@ pub struct Setup<T: Real> {
     pub initial: Initial<T, Dyn>,
     /// The measurements of steps 1, 2, …; none at a missed detection.
     pub measurements: Vec<Option<DVector<T>>>,
+    /// The problems of the steps, counted from 1, in which it is another.
+    pub changes: BTreeMap<usize, Problem<T, Dyn, Dyn>>,
 }
 
 impl<T: Real> Setup<T> {
@@ -100,11 +104,9 @@ impl ProblemFile {
 
     fn setup_with_rule<T: Real>(&self, number: fn(f64) -> T, rule: Option<Rule<T, Dyn>>) -> Result<Setup<T>, Invalid> {
         let list = |values: &[f64]| -> Vec<T> { values.iter().map(|&value| number(value)).collect() };
-        let modes = self.modes.iter().map(|mode| Mode {
-            name: mode.name.clone(),
-            motion: Motion::Linear(matrix(&mode.transition, number)),
-            noise: matrix(&mode.noise, number),
-        });
+        let functions = self.functions()?;
+        let first = self.measurements.iter().position(|entry| entry.interval.is_some());
+        let interval = self.parameters.get(STEP).or_else(|| self.interval(first?));
         let estimates = self.initial.modes.iter().map(|estimate| Gaussian {
             mean: vector(&estimate.mean, number),
             covariance: estimate.covariance.as_ref().map_or_else(
@@ -113,17 +115,18 @@ impl ProblemFile {
             ),
         });
         let problem = Problem {
-            modes: modes.collect(),
+            modes: self.modes_in(&functions, number, interval),
             filters: self.filters(number, rule)?,
             interaction: match &self.filter {
                 FilterFile::FixedGain { mixing, .. } if mixing == UNMIXED => Interaction::Unmixed,
                 _ => Interaction::Imm,
             },
             chain: self.transition.iter().map(|row| list(row)).collect(),
-            sensor: self.sensor(number)?,
+            sensor: self.sensor(&functions, number, interval)?,
             measurement_noise: matrix(&self.noise, number),
         };
         Ok(Setup {
+            changes: self.changes(&problem, &functions, number)?,
             problem,
             equations: Equations::standard(),
             initial: Initial {
@@ -138,8 +141,77 @@ impl ProblemFile {
         })
     }
 
-    fn sensor<T: Real>(&self, number: fn(f64) -> T) -> Result<Sensor<T, Dyn, Dyn>, Invalid> {
+    /// The modes in a step of this length.
+    fn modes_in<T: Real>(
+        &self,
+        functions: &Functions,
+        number: fn(f64) -> T,
+        interval: Option<f64>,
+    ) -> Vec<Mode<T, Dyn>> {
+        let of = |(mode, [motion, noise]): (&ModeFile, &[Option<Bound>; 2])| Mode {
+            name: mode.name.clone(),
+            motion: match motion {
+                None => Motion::Linear(matrix(&mode.transition, number)),
+                Some(bound) => bound.motion(number, interval),
+            },
+            noise: match noise {
+                None => matrix(&mode.noise, number),
+                Some(bound) => bound.noise(self.state.len(), number, interval),
+            },
+        };
+        self.modes.iter().zip(&functions.modes).map(of).collect()
+    }
+
+    /// The problems of the steps in which it is another.
+    fn changes<T: Real>(
+        &self,
+        problem: &Problem<T, Dyn, Dyn>,
+        functions: &Functions,
+        number: fn(f64) -> T,
+    ) -> Result<BTreeMap<usize, Problem<T, Dyn, Dyn>>, Invalid> {
+        let mut changes = BTreeMap::new();
+        for entry in self.measurements.iter().filter(|entry| entry.has_changes()) {
+            let mut changed = problem.clone();
+            if let Some(interval) = entry.interval {
+                changed.modes = self.modes_in(functions, number, Some(interval));
+                changed.sensor = self.sensor(functions, number, Some(interval))?;
+            }
+            let motions = entry.transitions.iter().flatten();
+            for (mode, rows) in changed.modes.iter_mut().zip(motions) {
+                mode.motion = Motion::Linear(matrix(rows, number));
+            }
+            for (mode, rows) in changed.modes.iter_mut().zip(entry.noises.iter().flatten()) {
+                mode.noise = matrix(rows, number);
+            }
+            if let Some(rows) = &entry.matrix {
+                changed.sensor = Sensor::Linear(matrix(rows, number));
+            }
+            if let Some(rows) = &entry.noise {
+                changed.measurement_noise = matrix(rows, number);
+            }
+            if let Some(rows) = &entry.transition {
+                let list = |row: &Vec<f64>| row.iter().map(|&value| number(value)).collect();
+                changed.chain = rows.iter().map(list).collect();
+            }
+            changes.insert(entry.step, changed);
+        }
+        Ok(changes)
+    }
+
+    fn sensor<T: Real>(
+        &self,
+        functions: &Functions,
+        number: fn(f64) -> T,
+        interval: Option<f64>,
+    ) -> Result<Sensor<T, Dyn, Dyn>, Invalid> {
+        if let Some((bound, space)) = &functions.sensor {
+            return Ok(bound.sensor(space, number, interval));
+        }
         match &self.measurement {
+            MeasurementFile::Formulas { .. } | MeasurementFile::Model { .. } => {
+                let reason = "is no function of the state";
+                Err(Invalid::new(Class::Unknown, "problem.measurement", reason))
+            }
             MeasurementFile::Linear { matrix: rows } => Ok(Sensor::Linear(matrix(rows, number))),
             MeasurementFile::RangeBearing {
                 components,

@@ -4,6 +4,7 @@
 //! that have a `kind` must know the kind before it can read the rest, and forgets the places on the way; here they are found again.
 
 use super::invalid::{Class, Invalid};
+use super::models::{ComponentFile, Parameters};
 use super::problem::{FixedGainFile, Rows};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -28,6 +29,14 @@ const OBJECTS: [(&str, &[Kind]); 2] = [
                     ("sensor", attempt::<[f64; 2]>),
                 ],
             ),
+            (
+                "formulas",
+                &[("z", attempt::<Vec<ComponentFile>>), ("h", attempt::<Vec<String>>)],
+            ),
+            (
+                "model",
+                &[("model", attempt::<String>), ("parameters", attempt::<Parameters>)],
+            ),
         ],
     ),
     (
@@ -51,6 +60,9 @@ const OBJECTS: [(&str, &[Kind]); 2] = [
         ],
     ),
 ];
+
+/// The keys that may be absent.
+const OPTIONAL: [&str; 1] = ["parameters"];
 
 fn attempt<T: DeserializeOwned>(value: &Value) -> Result<(), (String, String)> {
     serde_path_to_error::deserialize::<_, T>(value)
@@ -126,6 +138,9 @@ fn inside(text: &str, key: &str, kinds: &[Kind]) -> Option<Invalid> {
     }
     for (key, attempt) in *keys {
         let Some(value) = object.get(*key) else {
+            if OPTIONAL.contains(key) {
+                continue;
+            }
             return wrong(Class::Format, key, "is missing".into());
         };
         if let Err((inner, sentence)) = attempt(value) {

@@ -5,7 +5,7 @@
 
 use super::invalid::{Class, Invalid};
 use super::problem::{
-    Conventions, FORMAT, FilterFile, FixedGainFile, MIXINGS, MeasurementFile, ProblemFile, RULES, Rows,
+    Conventions, FORMAT, FORMAT_2, FilterFile, FixedGainFile, MIXINGS, MeasurementFile, ProblemFile, RULES, Rows,
 };
 use super::trace::Dimensions;
 use crate::imm::{InvalidProblem, Needs};
@@ -18,13 +18,18 @@ impl ProblemFile {
     ///
     /// [`Invalid`] with the place inside the file.
     pub fn check(&self) -> Result<(), Invalid> {
-        if self.format != FORMAT {
-            let reason = format!("is {:?}, but this program reads {FORMAT:?}", self.format);
+        if ![FORMAT, FORMAT_2].contains(&self.format.as_str()) {
+            let reason = format!(
+                "is {:?}, but this program reads {FORMAT:?} and {FORMAT_2:?}",
+                self.format
+            );
             return Err(Invalid::new(Class::Format, "problem.format", reason));
         }
+        self.check_new_keys()?;
         self.check_conventions()?;
         self.check_shapes()?;
         check_size(self.dimensions())?;
+        self.check_functions()?;
         self.check_filter()?;
         self.check_measurements()?;
         self.check_values()
@@ -33,7 +38,21 @@ impl ProblemFile {
     /// Puts the problem into doubles and lets the cycle check it.
     fn check_values(&self) -> Result<(), Invalid> {
         let setup = self.setup_in_doubles()?;
-        setup.problem.check(&setup.initial).map_err(|error| of_problem(&error))
+        setup
+            .problem
+            .check(&setup.initial)
+            .map_err(|error| of_problem(&error))?;
+        for (step, problem) in &setup.changes {
+            problem.check(&setup.initial).map_err(|error| Invalid {
+                place: format!("problem.measurements[{}]", step - 1),
+                ..Invalid::new(
+                    of_problem(&error).class,
+                    "",
+                    format!("changes the problem so that {error}"),
+                )
+            })?;
+        }
+        Ok(())
     }
 
     fn check_conventions(&self) -> Result<(), Invalid> {
@@ -68,7 +87,9 @@ impl ProblemFile {
         let Dimensions { n, m, r, .. } = self.dimensions();
         check_count("problem.state", n, MOST_STATES)?;
         check_count("problem.R", m, MOST_MEASURED)?;
-        check_length("problem.units", self.units.len(), n)?;
+        if self.format == FORMAT || !self.units.is_empty() {
+            check_length("problem.units", self.units.len(), n)?;
+        }
         check_matrix("problem.R", &self.noise, m, m)?;
         if r == 0 {
             return Err(Invalid::new(
@@ -78,14 +99,20 @@ impl ProblemFile {
             ));
         }
         for (j, mode) in self.modes.iter().enumerate() {
-            check_matrix(&format!("problem.modes[{j}].F"), &mode.transition, n, n)?;
-            check_matrix(&format!("problem.modes[{j}].Q"), &mode.noise, n, n)?;
+            if mode.models.formulas.is_none() && mode.models.motion.is_none() {
+                check_matrix(&format!("problem.modes[{j}].F"), &mode.transition, n, n)?;
+            }
+            if mode.models.noise.is_none() {
+                check_matrix(&format!("problem.modes[{j}].Q"), &mode.noise, n, n)?;
+            }
         }
         match &self.measurement {
             MeasurementFile::Linear { matrix } => check_matrix("problem.measurement.H", matrix, m, n)?,
             MeasurementFile::RangeBearing { components, .. } => {
                 check_length("problem.measurement.components", components.len(), m)?;
             }
+            MeasurementFile::Formulas { z, .. } => check_length("problem.measurement.z", z.len(), m)?,
+            MeasurementFile::Model { .. } => {}
         }
         check_matrix("problem.transition", &self.transition, r, r)?;
         check_length("problem.initial.modes", self.initial.modes.len(), r)?;
@@ -119,7 +146,7 @@ impl ProblemFile {
                 Err(Invalid::new(Class::Unknown, "problem.filter.rule", reason))
             }
             FilterFile::Kalman {} | FilterFile::FixedGain { .. }
-                if !matches!(self.measurement, MeasurementFile::Linear { .. }) =>
+                if matches!(self.measurement, MeasurementFile::RangeBearing { .. }) =>
             {
                 let name = self.filter.name();
                 let reason =
@@ -133,8 +160,13 @@ impl ProblemFile {
                 );
                 Err(Invalid::new(Class::Unknown, "problem.filter.conversion", reason))
             }
-            FilterFile::Converted { .. } if matches!(self.measurement, MeasurementFile::Linear { .. }) => {
-                let reason = "is converted, but a linear measurement is no range and bearing to be converted";
+            FilterFile::Converted { .. } if !matches!(self.measurement, MeasurementFile::RangeBearing { .. }) => {
+                let reason = match self.measurement {
+                    MeasurementFile::Linear { .. } => {
+                        "is converted, but a linear measurement is no range and bearing to be converted"
+                    }
+                    _ => "is converted, which asks for a measurement of the kind \"range-bearing\"",
+                };
                 Err(Invalid::new(Class::Unknown, "problem.filter.kind", reason))
             }
             FilterFile::FixedGain { mixing, modes } => self.check_fixed_gains(mixing, modes),
@@ -169,6 +201,7 @@ impl ProblemFile {
                 );
                 return Err(Invalid::new(Class::Shape, field, reason));
             }
+            self.check_changes(place, entry)?;
             let Some(z) = &entry.z else { continue };
             let field = format!("problem.measurements[{place}].z");
             check_length(&field, z.len(), m)?;
@@ -254,7 +287,7 @@ fn of_problem(error: &InvalidProblem) -> Invalid {
     }
 }
 
-fn check_length(field: &str, found: usize, expected: usize) -> Result<(), Invalid> {
+pub(super) fn check_length(field: &str, found: usize, expected: usize) -> Result<(), Invalid> {
     if found == expected {
         return Ok(());
     }
@@ -262,7 +295,7 @@ fn check_length(field: &str, found: usize, expected: usize) -> Result<(), Invali
     Err(Invalid::new(Class::Shape, field, reason))
 }
 
-fn check_matrix(field: &str, rows: &Rows, height: usize, width: usize) -> Result<(), Invalid> {
+pub(super) fn check_matrix(field: &str, rows: &Rows, height: usize, width: usize) -> Result<(), Invalid> {
     check_length(field, rows.len(), height)?;
     for (place, row) in rows.iter().enumerate() {
         check_length(&format!("{field}[{place}]"), row.len(), width)?;

@@ -12,13 +12,11 @@ use std::fmt::Write;
 /// The trace of a problem, its numbers already written.
 pub fn text(problem: &ProblemFile, values: &Table<Vec<String>>) -> String {
     let Dimensions { n, m, r, steps } = values.dimensions;
-    let mut text = format!("{}\n{}", problem.id, wrapped(&problem.about, "  "));
-    let _ = writeln!(
-        text,
-        "state {} in {}",
-        problem.state.join(", "),
-        problem.units.join(", ")
-    );
+    let mut text = format!("{}\n", problem.id);
+    if !problem.about.is_empty() {
+        text.push_str(&wrapped(&problem.about, "  "));
+    }
+    let _ = writeln!(text, "{}", state(problem));
     for step in 1..=steps {
         let detection = match problem.measurements.get(step - 1).and_then(|entry| entry.z.as_ref()) {
             Some(z) => format!("z = {z:?}"),
@@ -60,4 +58,19 @@ fn write_rows(text: &mut String, label: &str, numbers: &[String], columns: usize
         let row: Vec<String> = row.iter().map(|number| format!("{number:>width$}")).collect();
         let _ = writeln!(text, "    {label:<20} {}", row.join("  "));
     }
+}
+
+/// The components of the state, with their units where they have any.
+fn state(problem: &ProblemFile) -> String {
+    let names: Vec<&str> = problem.state.iter().map(|component| component.name.as_str()).collect();
+    let own = problem
+        .state
+        .iter()
+        .map(|component| component.unit.as_deref().unwrap_or("1"));
+    let units: Vec<&str> = if problem.units.is_empty() {
+        own.collect()
+    } else {
+        problem.units.iter().map(String::as_str).collect()
+    };
+    format!("state {} in {}", names.join(", "), units.join(", "))
 }

@@ -4,6 +4,7 @@
 //! from standard deviations and correlations, and, where a formula gives a number, its first twelve significant digits. The rounded
 //! number *is* the input.
 
+use immaculate::oracle::models::Parameters;
 use immaculate::oracle::problem::{
     Conventions, EstimateFile, FORMAT, FilterFile, InitialFile, MeasurementAt, MeasurementFile, ModeFile, ProblemFile,
     Rows,
@@ -78,6 +79,7 @@ pub fn mode(name: &str, transition: Rows, noise: Rows) -> ModeFile {
         name: name.to_owned(),
         transition,
         noise,
+        ..ModeFile::default()
     }
 }
 
@@ -113,8 +115,10 @@ impl Draft {
             id: String::new(),
             about: String::new(),
             flags: Vec::new(),
-            state: words(state),
+            state: state.iter().map(|&name| name.into()).collect(),
             units: words(units),
+            parameters: Parameters::default(),
+            definitions: Vec::new(),
             modes,
             measurement: MeasurementFile::Linear { matrix: Vec::new() },
             noise: Vec::new(),
@@ -183,6 +187,7 @@ impl Draft {
         let entry = |(place, z): (usize, &Option<[f64; M]>)| MeasurementAt {
             step: place + 1,
             z: z.map(|z| z.to_vec()),
+            ..MeasurementAt::default()
         };
         self.0.measurements = measurements.iter().enumerate().map(entry).collect();
         self

@@ -54,6 +54,7 @@ use crate::rule::Rule;
 use nalgebra::{DMatrix, DVector, Dyn};
 use serde::de::{Deserializer, Error};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
 /// What a variant is.
@@ -272,6 +273,28 @@ pub fn apply<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     if !setup.problem.has_covariances() && find(id).is_some_and(Variant::needs_covariances) {
         return true;
     }
+    if setup.changes.is_empty() {
+        return apply_once(id, setup);
+    }
+    // A variant changes the problem of each step; the measurements and the initial estimate it changes once.
+    let before = setup.clone();
+    let is_one = apply_once(id, setup);
+    for (step, problem) in before.changes {
+        let mut of_step = Setup {
+            problem,
+            equations: before.equations.clone(),
+            initial: before.initial.clone(),
+            measurements: before.measurements.clone(),
+            changes: BTreeMap::new(),
+        };
+        apply_once(id, &mut of_step);
+        setup.changes.insert(step, of_step.problem);
+    }
+    is_one
+}
+
+/// Applies a variant to a problem that is the same in every step.
+fn apply_once<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     input::apply(id, setup)
         || mixing::apply(id, setup)
         || prediction::apply(id, setup)

@@ -1,0 +1,150 @@
+//! The checks of what format 2 adds to a problem: its functions, and what changes from step to step.
+//!
+//! After this file the reader knows where a file of format 1 is told that it needs format 2, and what a step may replace.
+
+use super::invalid::{Class, Invalid};
+use super::problem::{FORMAT, FORMAT_2, MeasurementAt, MeasurementFile, ModeFile, ProblemFile, Rows};
+use super::well_formed::{check_length, check_matrix};
+use crate::model::binding::STEP;
+
+impl ProblemFile {
+    /// A problem of format 1 has nothing of format 2.
+    pub(super) fn check_new_keys(&self) -> Result<(), Invalid> {
+        if self.format != FORMAT {
+            return Ok(());
+        }
+        match self.first_new_key() {
+            None => Ok(()),
+            Some(place) => {
+                let reason = format!("needs the format {FORMAT_2:?}, and this file says {FORMAT:?}");
+                Err(Invalid::new(Class::Format, place, reason))
+            }
+        }
+    }
+
+    /// Where the first key stands that format 1 has not.
+    fn first_new_key(&self) -> Option<String> {
+        if let Some(index) = self.state.iter().position(|component| component.unit.is_some()) {
+            return Some(format!("problem.state[{index}]"));
+        }
+        let of_problem = [
+            ("parameters", !self.parameters.is_empty()),
+            ("let", !self.definitions.is_empty()),
+        ];
+        if let Some((key, _)) = of_problem.into_iter().find(|(_, is_there)| *is_there) {
+            return Some(format!("problem.{key}"));
+        }
+        for (j, mode) in self.modes.iter().enumerate() {
+            if let Some(key) = new_key_of_mode(mode) {
+                return Some(format!("problem.modes[{j}].{key}"));
+            }
+        }
+        if matches!(
+            self.measurement,
+            MeasurementFile::Formulas { .. } | MeasurementFile::Model { .. }
+        ) {
+            return Some("problem.measurement.kind".to_owned());
+        }
+        let mut steps = self.measurements.iter().enumerate();
+        steps.find_map(|(k, entry)| Some(format!("problem.measurements[{k}].{}", entry.first_change()?)))
+    }
+
+    /// The functions can be read, fit each other, and know how long a step is.
+    pub(super) fn check_functions(&self) -> Result<(), Invalid> {
+        self.check_angles()?;
+        let has_own_units = self.state.iter().any(|component| component.unit.is_some());
+        if has_own_units && !self.units.is_empty() {
+            let reason = "is given, and the state has units, too; they are said once";
+            return Err(Invalid::new(Class::Format, "problem.units", reason));
+        }
+        let functions = self.functions()?;
+        if let Some((_, space)) = &functions.sensor
+            && space.dimension() != self.noise.len()
+        {
+            let reason = format!(
+                "has {} rows, and the measurement gives {}: {}",
+                self.noise.len(),
+                space.dimension(),
+                space.names().join(", ")
+            );
+            return Err(Invalid::new(Class::Shape, "problem.R", reason));
+        }
+        self.check_intervals()?;
+        let of_modes = functions.modes.iter().flatten().flatten();
+        let of_sensor = functions.sensor.iter().map(|(bound, _)| bound);
+        for bound in of_modes.chain(of_sensor).filter(|bound| bound.needs_interval()) {
+            if let Some(k) = (0..self.measurements.len()).find(|&k| self.interval(k).is_none()) {
+                let reason = format!("is missing: {} needs the length of every step", bound.place());
+                return Err(Invalid::new(
+                    Class::Format,
+                    format!("problem.measurements[{k}].T"),
+                    reason,
+                ));
+            }
+        }
+        let n = self.state.len();
+        for bound in functions.modes.iter().filter_map(|[_, noise]| noise.as_ref()) {
+            for k in 0..self.measurements.len() {
+                if k == 0 || self.interval(k) != self.interval(k - 1) {
+                    bound.check_noise(n, self.interval(k))?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// No step is shorter than nothing. Two sensors may see at the same time.
+    fn check_intervals(&self) -> Result<(), Invalid> {
+        let of_steps = self.measurements.iter().enumerate();
+        let of_steps = of_steps.map(|(k, entry)| (format!("problem.measurements[{k}].T"), entry.interval));
+        let of_problem = ("problem.parameters.T".to_owned(), self.parameters.get(STEP));
+        for (place, interval) in of_steps.chain([of_problem]) {
+            if let Some(interval) = interval.filter(|interval| *interval < 0.0) {
+                let reason = format!("is {interval}; no step is shorter than 0");
+                return Err(Invalid::new(Class::Range, place, reason));
+            }
+        }
+        Ok(())
+    }
+
+    /// What a step replaces has the right shape.
+    pub(super) fn check_changes(&self, k: usize, entry: &MeasurementAt) -> Result<(), Invalid> {
+        let (n, m, r) = (self.state.len(), self.noise.len(), self.modes.len());
+        let place = |key: &str| format!("problem.measurements[{k}].{key}");
+        let lists: [(&str, &Option<Vec<Rows>>); 2] = [("F", &entry.transitions), ("Q", &entry.noises)];
+        for (key, list) in lists {
+            let Some(list) = list else { continue };
+            check_length(&place(key), list.len(), r)?;
+            for (j, rows) in list.iter().enumerate() {
+                check_matrix(&format!("{}[{j}]", place(key)), rows, n, n)?;
+            }
+        }
+        if let Some(rows) = &entry.matrix {
+            if !matches!(self.measurement, MeasurementFile::Linear { .. }) {
+                let reason = "replaces the matrix of a linear measurement, and this measurement is none";
+                return Err(Invalid::new(Class::Format, place("H"), reason));
+            }
+            check_matrix(&place("H"), rows, m, n)?;
+        }
+        if let Some(rows) = &entry.noise {
+            check_matrix(&place("R"), rows, m, m)?;
+        }
+        if let Some(rows) = &entry.transition {
+            check_matrix(&place("transition"), rows, r, r)?;
+        }
+        Ok(())
+    }
+}
+
+/// The first key of a mode that format 1 has not.
+fn new_key_of_mode(mode: &ModeFile) -> Option<&'static str> {
+    let models = &mode.models;
+    let keys = [
+        ("f", models.formulas.is_some()),
+        ("motion", models.motion.is_some()),
+        ("Q", models.noise.is_some()),
+        ("let", !models.definitions.is_empty()),
+        ("parameters", !models.parameters.is_empty()),
+    ];
+    keys.into_iter().find(|(_, is_there)| *is_there).map(|(key, _)| key)
+}
