@@ -26,29 +26,29 @@ pub struct Cli {
 #[derive(Subcommand)]
 enum Command {
     /// Rerun the papers' simulations and set their tables beside the published ones
-    Reproduce(cli::reproduce::Reproduce),
+    Reproduce(cli::reproduce::ReproduceArguments),
     /// Judge what the papers claim, each claim by computation
-    Claims(cli::claims::Claims),
+    Claims(cli::claims::ClaimsArguments),
     /// Write everything on one page: figures, tables, claims, errata, equations
-    Report(cli::report::Report),
+    Report(cli::report::ReportArguments),
     /// List a cubature rule: points and weights, exact and decimal, with its proven degree
-    Rule(cli::rule::Rule),
+    Rule(cli::rule::RuleArguments),
     /// List the open parameters of the papers' scenarios and their alternatives
-    Choices(cli::choices::Choices),
+    Choices(cli::choices::ChoicesArguments),
     /// Judge a filter in any language: right to so many digits, or wrong in which equation, and why
-    Check(cli::check::Check),
+    Check(cli::check::CheckArguments),
     /// Run a problem file and print every value of every step; with --digits, proven
-    Trace(cli::trace::Trace),
+    Trace(cli::trace::TraceArguments),
     /// List, show, copy and prove the certified cases
-    Cases(cli::cases::Cases),
+    Cases(cli::cases::CasesArguments),
     /// List the catalogue of mistakes, conventions and forms that `check` can name
-    Variants(cli::variants::Variants),
+    Variants(cli::variants::VariantsArguments),
     /// Show an equation of the papers: formula, erratum, derivation, code, tests, and what catches mistakes in it
-    Equation(cli::equation::Equation),
+    Equation(cli::equation::EquationArguments),
     /// Prove two fixed-gain filters that exchange estimates stable together, or unstable; map, certificates
-    Stability(cli::stability::Stability),
+    Stability(cli::stability::StabilityArguments),
     /// Be a program under test: this crate's own filter, with mistakes planted on demand
-    Answer(cli::answer::Answer),
+    Answer(cli::answer::AnswerArguments),
 }
 
 fn main() -> ExitCode {

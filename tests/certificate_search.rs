@@ -17,7 +17,7 @@ use immaculate::steady::map::{CHAIN, Map, greatest_frozen_radius};
 use immaculate::steady::pair::{acceleration_matrix, frozen_matrix, product, velocity_matrix};
 use immaculate::steady::polynomial::has_radius_below;
 use immaculate::steady::search::{fastest_runs, fastest_word, product_certificate, quadratics, spectral_radius};
-use immaculate::steady::verdict::{Depth, Filters, Verdict};
+use immaculate::steady::verdict::{Depth, Filters, StabilityVerdict};
 use nalgebra::{Matrix2, Matrix3, SMatrix, matrix};
 
 fn drawn<const N: usize>(generator: &mut Generator) -> SMatrix<f64, N, N> {
@@ -307,11 +307,12 @@ fn a_point_of_the_map_is_where_its_tracking_indices_are() {
     assert!(radii.clone().any(|radius| radius < greatest));
     assert_eq!(map.greatest_frozen_radius(), greatest);
     // Each verdict is counted once.
-    let counted = |kind: fn(&Verdict) -> bool| map.points.iter().flatten().filter(|point| kind(&point.verdict)).count();
+    let counted =
+        |kind: fn(&StabilityVerdict) -> bool| map.points.iter().flatten().filter(|point| kind(&point.verdict)).count();
     let counts = [
-        counted(|verdict| matches!(verdict, Verdict::Stable(_))),
-        counted(|verdict| matches!(verdict, Verdict::Unstable(_))),
-        counted(|verdict| matches!(verdict, Verdict::Undecided { .. })),
+        counted(|verdict| matches!(verdict, StabilityVerdict::Stable(_))),
+        counted(|verdict| matches!(verdict, StabilityVerdict::Unstable(_))),
+        counted(|verdict| matches!(verdict, StabilityVerdict::Undecided { .. })),
     ];
     assert_eq!((map.counts(), counts.iter().sum()), (counts, 16));
 }

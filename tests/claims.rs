@@ -16,7 +16,7 @@ use immaculate::paper::simulation::Simulation;
 use immaculate::paper::specification::{Choices, Specification, derbez2000, liu2017, zhu2016};
 use immaculate::paper::sustika2015::claims::{is_mismatch_the_cause, ratio_less, the_window_decides};
 use immaculate::paper::verdict::{
-    Judgement, Verdict, all_below_zero, all_of, below_zero_whichever, better_by_a_thousandth, confirmed_if, in_words,
+    JudgedClaim, Verdict, all_below_zero, all_of, below_zero_whichever, better_by_a_thousandth, confirmed_if, in_words,
     is_within_a_thousandth, proven_by, proven_if, refuted_by, sign_of, whichever,
 };
 use immaculate::paper::zhu2016::arithmetic::{all_rmse_smaller, better_than_ckf, load};
@@ -327,7 +327,7 @@ fn an_experiment_is_bounded_where_no_run_fails_and_none_reaches_the_limit() {
 fn a_judgement_has_the_words_of_its_claim() {
     for claim in &zhu2016().claims {
         let judgement = zhu2016().judgement(&claim.id, Verdict::Undecided, "evidence".into());
-        let Judgement {
+        let JudgedClaim {
             id,
             quote,
             place,
@@ -349,7 +349,7 @@ fn a_judgement_has_the_words_of_its_claim() {
 const EFFORT: Effort = Effort { runs: Some(3), seed: 1 };
 
 /// Verdict, claim and evidence, a line a sentence or a clause, so that a figure that moves is one line.
-fn ledger(judgements: &[Judgement]) -> String {
+fn ledger(judgements: &[JudgedClaim]) -> String {
     let mut text = String::new();
     for judgement in judgements {
         let words: Vec<&str> = judgement.evidence.split(' ').map(without_rounding).collect();
@@ -398,7 +398,7 @@ fn the_ledger_of_sustika2015() {
 #[test]
 fn what_runs_say_of_derbez2000() {
     let s = derbez2000();
-    let runs = claims::Evidence::new(EFFORT, &|| ()).unwrap();
+    let runs = claims::CoordinateEvidence::new(EFFORT, &|| ()).unwrap();
     insta::assert_snapshot!(ledger(&[
         claims::almost_as_well(s, &runs),
         claims::minor_covariance_changes(s, &runs, EFFORT),
@@ -555,7 +555,7 @@ fn a_judge_of_a_table_follows_the_table() {
 }
 
 /// The runs of derbez2000 with the same error of a filter in x and y at every step of every run: a difference that is certain.
-fn with_errors(runs: &claims::Evidence, errors: &[(usize, f64)]) -> claims::Evidence {
+fn with_errors(runs: &claims::CoordinateEvidence, errors: &[(usize, f64)]) -> claims::CoordinateEvidence {
     let mut runs = runs.clone();
     for experiment in runs.manoeuvres.iter_mut().chain(&mut runs.acceleration) {
         for run in &mut experiment.runs {
@@ -571,7 +571,7 @@ fn with_errors(runs: &claims::Evidence, errors: &[(usize, f64)]) -> claims::Evid
 #[test]
 fn a_judge_of_derbez2000_follows_the_runs() {
     let s = derbez2000();
-    let runs = claims::Evidence::new(EFFORT, &|| ()).unwrap();
+    let runs = claims::CoordinateEvidence::new(EFFORT, &|| ()).unwrap();
     // IMM, fixed gain, constant acceleration, the other reading of the second, and the first without the spread.
     let [imm, fixed, single, other, without] = [0, 1, 2, 3, 4];
     let (confirmed, refuted) = (Verdict::Confirmed, Verdict::Refuted);
@@ -618,7 +618,7 @@ fn a_judge_of_derbez2000_follows_the_runs() {
 /// Filters that are certain, in either coordinate, of what the target did so many steps before.
 #[test]
 fn a_judge_of_delays_follows_the_mode_probabilities() {
-    let runs = claims::Evidence::new(EFFORT, &|| ()).unwrap();
+    let runs = claims::CoordinateEvidence::new(EFFORT, &|| ()).unwrap();
     for ([imm, fixed], verdict) in [
         ([1, 2], Verdict::Confirmed),
         ([2, 1], Verdict::Refuted),
@@ -682,7 +682,7 @@ fn a_judge_of_zhu2016_follows_the_runs() {
         linear_accuracy, negative_weights_diverge, no_divergence, nonlinear_filters_better_than_omtm,
         single_model_worst, switching_sensitivity, with_kalman_filter,
     };
-    type Judge<E> = fn(&Specification, &E) -> Judgement;
+    type Judge<E> = fn(&Specification, &E) -> JudgedClaim;
     let s = zhu2016();
     let printed = Experiment::new(with_kalman_filter().unwrap(), EFFORT, &|| ());
     // The filter of one model, in the place of one with three, is another filter.

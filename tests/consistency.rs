@@ -23,7 +23,7 @@ use immaculate::matrix::{cholesky, ldl, quadratic_form};
 use immaculate::model::motion::{Mode, Motion, constant_velocity, coordinated_turn, integrated_noise};
 use immaculate::model::{PolarComponent, Sensor};
 use immaculate::paper::Paper;
-use immaculate::paper::comparison::{Comparison, Quantity};
+use immaculate::paper::comparison::{Comparison, ErrorQuantity};
 use immaculate::paper::monte_carlo::{Generator, run};
 use immaculate::paper::specification::Choices;
 use immaculate::rule::RuleName;
@@ -356,8 +356,8 @@ fn pairing_removes_the_noise_that_two_filters_share() {
             scenario: &scenario,
             runs: &runs,
         };
-        let [of_a, of_b] = [a, b].map(|filter| comparison.error(filter, Quantity::Position));
-        (of_a, of_b, comparison.difference(a, b, Quantity::Position))
+        let [of_a, of_b] = [a, b].map(|filter| comparison.error(filter, ErrorQuantity::Position));
+        (of_a, of_b, comparison.difference(a, b, ErrorQuantity::Position))
     };
     // liu2017's third-degree and fifth-degree filters: errors of 70 m that differ by less than a millimetre.
     let (_, _, paired) = compared(Paper::Liu2017, "paired", 1, 2);

@@ -9,11 +9,11 @@ use common::ROUNDOFF;
 use immaculate::filter::{Filter, Update};
 use immaculate::imm::{Imm, Initial, Problem};
 use immaculate::model::Conversion;
-use immaculate::paper::derbez2000::contestants::Noise;
-use immaculate::paper::derbez2000::contestants::{Contestant, Coordinates};
+use immaculate::paper::derbez2000::contestants::MeasurementNoise;
+use immaculate::paper::derbez2000::contestants::{CoordinateFilters, Coordinates};
 use immaculate::paper::derbez2000::radar::{converted_variances, polar};
 use immaculate::paper::derbez2000::relative::{Relative, Tally};
-use immaculate::paper::derbez2000::scenario::{Scenario, track};
+use immaculate::paper::derbez2000::scenario::{CoordinateScenario, track};
 use immaculate::paper::derbez2000::search::distance;
 use immaculate::paper::derbez2000::{self, path};
 use immaculate::paper::specification::Choices;
@@ -65,7 +65,7 @@ fn every_line_passes_the_radar_at_its_closest_point() {
 #[test]
 fn range_and_bearing_move_as_their_derivatives_say() {
     let h = 1e-4;
-    let place = |t: f64| -> path::Place {
+    let place = |t: f64| -> path::PlaneState {
         [
             Vector3::new(300.0 - 20.0 * t + 1.5 * t * t, -20.0 + 3.0 * t, 3.0),
             Vector3::new(-40.0 + 7.0 * t - t * t, 7.0 - 2.0 * t, -2.0),
@@ -188,7 +188,7 @@ fn a_filter_that_is_told_the_same_noise_at_every_step_goes_on_as_if_it_were_not(
         for (problem, variance) in polar.problems.iter_mut().zip(scenario.variances) {
             problem.measurement_noise = Matrix1::new(variance);
         }
-        let told = Contestant {
+        let told = CoordinateFilters {
             follows_noise: true,
             ..polar.clone()
         };
@@ -203,7 +203,7 @@ fn a_filter_that_is_told_the_same_noise_at_every_step_goes_on_as_if_it_were_not(
 #[test]
 fn the_mean_noise_is_that_of_the_path() {
     let scenario = of(&Choices::default());
-    assert_eq!(scenario.setup.noise, Noise::MeanOverThePath);
+    assert_eq!(scenario.setup.noise, MeasurementNoise::MeanOverThePath);
     let [x, y] = scenario.setup.measurement_variances(&scenario.path);
     // Both together are the mean of σ_r² + r² σ_θ², whatever the direction.
     let squares = scenario
@@ -263,6 +263,6 @@ fn the_distance_from_a_table_is_the_greatest_ratio() {
     assert!(distance(&errors(f64::NAN), &published).is_infinite());
 }
 
-fn of(choices: &Choices) -> Scenario {
+fn of(choices: &Choices) -> CoordinateScenario {
     derbez2000::scenario(choices).unwrap()
 }

@@ -17,16 +17,16 @@ use immaculate::model::Conversion;
 use immaculate::model::conversion_moments::attenuation;
 use immaculate::model::conversion_validity::{Validity, validity};
 use immaculate::paper::Paper;
-use immaculate::paper::comparison::Quantity;
+use immaculate::paper::comparison::ErrorQuantity;
 use immaculate::paper::result::Reproduction;
-use immaculate::paper::sustika2015::sweep::{Fit, Parameter, Point, Trajectory, settings};
+use immaculate::paper::sustika2015::sweep::{Fit, SweepPoint, SweptParameter, SweptTrajectory, settings};
 use immaculate::report::long_term::{Panel, heat_maps};
 use immaculate::report::palette::{FILTERS, INK, MEASURED, SHADE, hexadecimal};
 use immaculate::report::{conversion, figure, fit_error, path, published, reproduction, stability_map};
 use immaculate::statistics::Estimate;
 use immaculate::steady::map::Map;
 use immaculate::steady::simulated::Grid;
-use immaculate::steady::verdict::{Depth, Verdict};
+use immaculate::steady::verdict::{Depth, StabilityVerdict};
 use std::sync::OnceLock;
 
 /// A label is rounded to a pixel and a point to another, at either end of a scale.
@@ -38,7 +38,7 @@ fn errors_over_time_go_through_their_values() {
         let drawn = shapes(&figure::errors(reproduction).unwrap());
         let panels = frames(&drawn);
         assert_eq!(panels.len(), 2, "position and velocity");
-        for (panel, quantity) in panels.iter().zip([Quantity::Position, Quantity::Velocity]) {
+        for (panel, quantity) in panels.iter().zip([ErrorQuantity::Position, ErrorQuantity::Velocity]) {
             let histories = reproduction.filters.iter().map(|filter| {
                 let history = filter.rmse.iter().find(|history| history.quantity == quantity).unwrap();
                 Some((history.values.clone(), history.standard_errors.clone()))
@@ -206,11 +206,11 @@ fn fit_errors_go_through_their_means_on_plain_and_on_logarithmic_axes() {
             .into_iter()
             .map(|setting| (setting, point(setting.value, factor)))
             .collect();
-        for trajectory in Trajectory::ALL {
+        for trajectory in SweptTrajectory::ALL {
             let drawn = shapes(&fit_error::draw(&points, trajectory, 50).unwrap());
             let panels = frames(&drawn);
             assert_eq!(panels.len(), 2);
-            for (panel, parameter) in panels.iter().zip(Parameter::ALL) {
+            for (panel, parameter) in panels.iter().zip(SweptParameter::ALL) {
                 let of_panel: Vec<_> = points
                     .iter()
                     .filter(|(setting, _)| setting.trajectory == trajectory && setting.parameter == parameter)
@@ -247,7 +247,7 @@ fn fit_errors_go_through_their_means_on_plain_and_on_logarithmic_axes() {
 }
 
 /// What some runs may show at a setting.
-fn point(setting: f64, factor: f64) -> Point {
+fn point(setting: f64, factor: f64) -> SweepPoint {
     let fit = |filter: f64| Fit {
         mean: Estimate {
             value: factor * (1.0 + filter * setting * setting),
@@ -262,7 +262,7 @@ fn point(setting: f64, factor: f64) -> Point {
         value: 0.0,
         standard_error: 1.0,
     };
-    Point {
+    SweepPoint {
         runs_with_jump: 0,
         fits: [fit(0.0), fit(1.0), fit(3.0)],
         unscented_less_converted: none,
@@ -375,12 +375,12 @@ fn a_cell_of_the_stability_map_has_the_colour_of_its_verdict() {
         for point in map.points.iter().flatten() {
             let [v, a] = point.indices.each_ref().map(immaculate::number::Rational::to_f64);
             let (fill, opacity) = match &point.verdict {
-                Verdict::Stable(found) if found.forms.len() == 1 => (colour(0), 1.0),
-                Verdict::Stable(_) => (colour(0), 0.45),
-                Verdict::Unstable(found) if found.word.len() == 2 => (colour(1), 1.0),
-                Verdict::Unstable(found) if found.word.len() <= 5 => (colour(1), 0.55),
-                Verdict::Unstable(_) => (colour(1), 0.25),
-                Verdict::Undecided { .. } => ("#000000", 1.0),
+                StabilityVerdict::Stable(found) if found.forms.len() == 1 => (colour(0), 1.0),
+                StabilityVerdict::Stable(_) => (colour(0), 0.45),
+                StabilityVerdict::Unstable(found) if found.word.len() == 2 => (colour(1), 1.0),
+                StabilityVerdict::Unstable(found) if found.word.len() <= 5 => (colour(1), 0.55),
+                StabilityVerdict::Unstable(_) => (colour(1), 0.25),
+                StabilityVerdict::Undecided { .. } => ("#000000", 1.0),
             };
             let cell = rectangle_at(&drawn, (x.pixel(a), y.pixel(v))).unwrap();
             assert_eq!(

@@ -9,7 +9,7 @@ use common::runs::{self, EFFORT};
 use immaculate::paper::Paper;
 use immaculate::paper::result::Reproduction;
 use immaculate::paper::specification::Choices;
-use immaculate::paper::sustika2015::sweep::{Sweep, Trajectory};
+use immaculate::paper::sustika2015::sweep::{Sweep, SweptTrajectory};
 use immaculate::report::palette::{self, hexadecimal};
 use immaculate::report::{conversion, figure, fit_error, long_term, path, published, reproduction, stability_map};
 use immaculate::steady::map::Map;
@@ -245,7 +245,7 @@ fn draw_all() -> Vec<(String, String)> {
     all.push(("figures-1-and-2".into(), long_term::figures_1_and_2(1).unwrap()));
     let sweep = Sweep::new(&Choices::default(), 2, 1).unwrap();
     let points = sweep.run(&|| ());
-    for trajectory in Trajectory::ALL {
+    for trajectory in SweptTrajectory::ALL {
         let svg = fit_error::draw(&points, trajectory, sweep.runs).unwrap();
         all.push((format!("sweep-{}", trajectory.name()), svg));
     }

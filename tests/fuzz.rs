@@ -24,7 +24,7 @@ use immaculate::oracle::trace::{Dimensions, Trace, read_json};
 use immaculate::paper::Paper;
 use immaculate::paper::specification::Choices;
 use immaculate::steady::certificate_file::CertificateFile;
-use immaculate::steady::verdict::{Depth, Verdict};
+use immaculate::steady::verdict::{Depth, StabilityVerdict};
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use proptest::test_runner::RngSeed;
@@ -443,7 +443,8 @@ fn certificate_law(text: &str) -> bool {
     let found = file.filters.filters().unwrap().decide(shallow);
     let contradicts = matches!(
         (&proven, &found),
-        (Verdict::Stable(_), Verdict::Unstable(_)) | (Verdict::Unstable(_), Verdict::Stable(_))
+        (StabilityVerdict::Stable(_), StabilityVerdict::Unstable(_))
+            | (StabilityVerdict::Unstable(_), StabilityVerdict::Stable(_))
     );
     assert!(!contradicts, "{text}");
     true

@@ -4,7 +4,7 @@
 //! program answers and not whether that is right; it is for people who compare it with the published tables, and with what stood
 //! there before. How long anything took is left out, and the figures of 20 runs are rough: `immaculate reproduce` has the rest.
 
-use immaculate::paper::comparison::Quantity;
+use immaculate::paper::comparison::ErrorQuantity;
 use immaculate::paper::result::{Performance, Reproduction};
 use immaculate::paper::specification::Choices;
 use immaculate::paper::{Effort, Paper};
@@ -36,7 +36,7 @@ fn derbez2000_at_its_defaults() {
     let mut text = format!("{manoeuvres}\nscenario 1, errors\n");
     for filter in &acceleration.filters {
         let _ = write!(text, "{:<12}", filter.name);
-        for quantity in [Quantity::X, Quantity::Y, Quantity::Position] {
+        for quantity in [ErrorQuantity::X, ErrorQuantity::Y, ErrorQuantity::Position] {
             let error = acceleration.error(&filter.name, quantity).unwrap();
             let _ = write!(
                 text,
@@ -228,7 +228,7 @@ fn open_choices(paper: Paper) -> String {
         let reproduction = reproduce(paper, choices);
         let _ = write!(text, "{:<50}", choices.describe());
         for name in &names {
-            let error = reproduction.error(name, Quantity::Position);
+            let error = reproduction.error(name, ErrorQuantity::Position);
             let error = error.map_or("none".to_owned(), |error| figure(error.value));
             let _ = write!(text, " {error:>20}");
         }

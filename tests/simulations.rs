@@ -9,10 +9,10 @@
 
 use immaculate::imm::Equations;
 use immaculate::model::{Conversion, PolarComponent, Sensor};
-use immaculate::paper::comparison::Quantity;
+use immaculate::paper::comparison::ErrorQuantity;
 use immaculate::paper::derbez2000::contestants::Coordinates;
-use immaculate::paper::derbez2000::contestants::Noise as Variance;
-use immaculate::paper::derbez2000::path::{Motion as Leg, Place};
+use immaculate::paper::derbez2000::contestants::MeasurementNoise as Variance;
+use immaculate::paper::derbez2000::path::{PlaneState, Regime as Leg};
 use immaculate::paper::derbez2000::scenario::{follow, track as track_coordinates};
 use immaculate::paper::derbez2000::{self, contestants::Reading, radar};
 use immaculate::paper::monte_carlo::Generator;
@@ -24,7 +24,7 @@ use immaculate::paper::simulation::Simulation;
 use immaculate::paper::specification::Choices;
 use immaculate::paper::sustika2015::contestants::{Bearings, ConvertedAt, InitialCovariance, Mixing};
 use immaculate::paper::sustika2015::scenario::FirstMeasurement;
-use immaculate::paper::sustika2015::truth::Noise;
+use immaculate::paper::sustika2015::truth::TruthNoise;
 use immaculate::paper::{Effort, Paper, liu2017, sustika2015, zhu2016};
 use immaculate::rule::RuleName;
 use immaculate::statistics::consistency::{nees, nis};
@@ -200,7 +200,7 @@ fn every_alternative_of_liu2017_means_what_its_sentence_says() {
 
 #[test]
 fn every_alternative_of_derbez2000_means_what_its_sentence_says() {
-    type S = derbez2000::scenario::Scenario;
+    type S = derbez2000::scenario::CoordinateScenario;
     assert_meanings::<S>(
         Paper::Derbez2000,
         |choices| derbez2000::scenario(choices).unwrap(),
@@ -300,7 +300,7 @@ fn every_alternative_of_derbez2000_means_what_its_sentence_says() {
 
 #[test]
 fn every_alternative_of_sustika2015_means_what_its_sentence_says() {
-    type S = sustika2015::scenario::Scenario;
+    type S = sustika2015::scenario::RadarScenario;
     let manoeuvres = |scenario: &S| {
         let motions = (2..).zip(&scenario.trajectory.motions);
         motions
@@ -319,9 +319,9 @@ fn every_alternative_of_sustika2015_means_what_its_sentence_says() {
                 seconds(s) == (51..=70).chain(121..=200).collect::<Vec<_>>()
             }),
             ("truth", "one-trajectory", |s, _| {
-                s.trajectory.noise == Noise::OneTrajectory
+                s.trajectory.noise == TruthNoise::OneTrajectory
             }),
-            ("truth", "noise-free", |s, _| s.trajectory.noise == Noise::Free),
+            ("truth", "noise-free", |s, _| s.trajectory.noise == TruthNoise::Free),
             ("first-measurement", "filtered", |s, _| {
                 s.first_measurement == FirstMeasurement::FilteredAgain
             }),
@@ -665,14 +665,26 @@ fn a_row_of_a_table_is_of_one_simulation_and_one_figure() {
     let of_error = |quantity| Some(Figure::Error(quantity));
     let scenario = |name: &str| Choices::of("scenario", name);
     for (paper, choices, table, row, expected) in [
-        (Paper::Derbez2000, Choices::default(), 1, "x-RMS", of_error(Quantity::X)),
-        (Paper::Derbez2000, Choices::default(), 1, "y-RMS", of_error(Quantity::Y)),
+        (
+            Paper::Derbez2000,
+            Choices::default(),
+            1,
+            "x-RMS",
+            of_error(ErrorQuantity::X),
+        ),
+        (
+            Paper::Derbez2000,
+            Choices::default(),
+            1,
+            "y-RMS",
+            of_error(ErrorQuantity::Y),
+        ),
         (
             Paper::Derbez2000,
             Choices::default(),
             1,
             "Overall",
-            of_error(Quantity::Position),
+            of_error(ErrorQuantity::Position),
         ),
         (Paper::Derbez2000, Choices::default(), 1, "Cost/flops", None),
         // Table 2 is of scenario 3, and scenario 1 has none.
@@ -715,21 +727,33 @@ fn a_row_of_a_table_is_of_one_simulation_and_one_figure() {
             "2nd scenario",
             None,
         ),
-        (Paper::Zhu2016, Choices::default(), 1, "RMSE_X", of_error(Quantity::X)),
+        (
+            Paper::Zhu2016,
+            Choices::default(),
+            1,
+            "RMSE_X",
+            of_error(ErrorQuantity::X),
+        ),
         (
             Paper::Zhu2016,
             Choices::default(),
             1,
             "RMSE_X_V",
-            of_error(Quantity::VelocityX),
+            of_error(ErrorQuantity::VelocityX),
         ),
-        (Paper::Zhu2016, Choices::default(), 1, "RMSE_Y", of_error(Quantity::Y)),
+        (
+            Paper::Zhu2016,
+            Choices::default(),
+            1,
+            "RMSE_Y",
+            of_error(ErrorQuantity::Y),
+        ),
         (
             Paper::Zhu2016,
             Choices::default(),
             1,
             "RMSE_Y_V",
-            of_error(Quantity::VelocityY),
+            of_error(ErrorQuantity::VelocityY),
         ),
         (Paper::Zhu2016, Choices::default(), 1, "Time", None),
         (
@@ -737,14 +761,14 @@ fn a_row_of_a_table_is_of_one_simulation_and_one_figure() {
             Choices::default(),
             1,
             "Position ARMSE",
-            of_error(Quantity::Position),
+            of_error(ErrorQuantity::Position),
         ),
         (
             Paper::Liu2017,
             Choices::default(),
             1,
             "Velocity ARMSE",
-            of_error(Quantity::Velocity),
+            of_error(ErrorQuantity::Velocity),
         ),
         (Paper::Liu2017, Choices::default(), 2, "Number of Points", None),
     ] {
@@ -1022,7 +1046,7 @@ fn what_is_kept_of_two_coordinates_is_an_error_in_the_plane_and_both_filters_wor
         let seen = scenario.seen(1, 1);
         let run = track_coordinates(&scenario, contestant, &seen);
         let mut k = 0;
-        let mut keep = |steps: derbez2000::scenario::Steps, place: &Place| {
+        let mut keep = |steps: derbez2000::scenario::Steps, place: &PlaneState| {
             let [first, second] = steps.map(|step| step.combined.mean);
             let estimate = if contestant.coordinates == Coordinates::Polar {
                 let (sine, cosine) = second[0].sin_cos();
@@ -1070,7 +1094,7 @@ fn a_filter_that_follows_the_noise_is_told_that_of_each_measurement_and_no_other
         for contestant in [&scenario.contestants[0], &scenario.contestants[2]] {
             let seen = scenario.seen(0, 1);
             let mut measurements = seen.iter();
-            let mut keep = |steps: derbez2000::scenario::Steps, _: &Place| {
+            let mut keep = |steps: derbez2000::scenario::Steps, _: &PlaneState| {
                 let of_this = radar::converted_variances(measurements.next().unwrap().position, scenario.variances);
                 let told = if follows { of_this } else { mean };
                 for (step, told) in steps.iter().zip(told) {
@@ -1200,17 +1224,18 @@ fn initial(scenario: &Scenario) -> [f64; 4] {
     scenario.initial_covariance.diagonal().into()
 }
 
-fn noises(scenario: &derbez2000::scenario::Scenario) -> Vec<[f64; 2]> {
-    let of =
-        |c: &derbez2000::contestants::Contestant| c.problems.each_ref().map(|problem| problem.measurement_noise[0]);
+fn noises(scenario: &derbez2000::scenario::CoordinateScenario) -> Vec<[f64; 2]> {
+    let of = |c: &derbez2000::contestants::CoordinateFilters| {
+        c.problems.each_ref().map(|problem| problem.measurement_noise[0])
+    };
     scenario.contestants.iter().map(of).collect()
 }
 
-fn along(place: &Place) -> Vector3<f64> {
+fn along(place: &PlaneState) -> Vector3<f64> {
     place[0]
 }
 
-fn position(place: &Place) -> [f64; 2] {
+fn position(place: &PlaneState) -> [f64; 2] {
     [place[0][0], place[1][0]]
 }
 
@@ -1221,7 +1246,7 @@ fn falls(k: i32, sign: f64) -> Vector3<f64> {
 }
 
 /// Whether the turn is one by so many degrees, and at the rate that its acceleration says.
-fn turned(scenario: &derbez2000::scenario::Scenario, degrees: f64) -> bool {
+fn turned(scenario: &derbez2000::scenario::CoordinateScenario, degrees: f64) -> bool {
     let turning: Vec<usize> = (0..scenario.path.motions.len())
         .filter(|k| scenario.path.motions[*k] == Leg::Turn)
         .collect();
@@ -1237,7 +1262,7 @@ fn turned(scenario: &derbez2000::scenario::Scenario, degrees: f64) -> bool {
     })
 }
 
-fn seconds(scenario: &sustika2015::scenario::Scenario) -> Vec<usize> {
+fn seconds(scenario: &sustika2015::scenario::RadarScenario) -> Vec<usize> {
     let motions = (2..).zip(&scenario.trajectory.motions);
     motions
         .filter(|(_, motion)| motion.name() == "constant acceleration")

@@ -32,7 +32,7 @@ use immaculate::steady::pair::{acceleration_matrix, frozen_matrix, product, rema
 use immaculate::steady::polynomial::{characteristic_polynomial, has_radius_below, is_stable_polynomial, rows_of};
 use immaculate::steady::reach::{polynomial_text, unseen_part};
 use immaculate::steady::riccati::{NoSteadyState, Riccati, SteadyState};
-use immaculate::steady::verdict::{Depth, Filters, Verdict, rows_text, word_text};
+use immaculate::steady::verdict::{Depth, Filters, StabilityVerdict, rows_text, word_text};
 use nalgebra::{Matrix1, Matrix2, Matrix3, SMatrix, Vector2, Vector3};
 use num_traits::{One, Zero};
 
@@ -799,11 +799,11 @@ fn whatever_is_decided_is_proven() {
     for (v, a, forms, letters) in cases {
         let filters = Filters::Roots([rational(v), rational(a)]);
         match filters.decide(Depth::default()) {
-            Verdict::Stable(found) => {
+            StabilityVerdict::Stable(found) => {
                 filters.check_stable(&found).unwrap();
                 assert_eq!(found.forms.len(), forms, "{v} {a}");
             }
-            Verdict::Unstable(found) => {
+            StabilityVerdict::Unstable(found) => {
                 filters.check_unstable(&found).unwrap();
                 assert_eq!(found.word.len(), letters, "{v} {a}");
                 let written = word_text(&found.word);
@@ -812,7 +812,7 @@ fn whatever_is_decided_is_proven() {
                     "{written}"
                 );
             }
-            Verdict::Undecided { growth } => panic!("{v} {a}: {growth}"),
+            StabilityVerdict::Undecided { growth } => panic!("{v} {a}: {growth}"),
         }
     }
 }
@@ -841,7 +841,7 @@ fn the_paper_s_filters_are_certified_stable() {
     for (name, text) in certificate_files() {
         let proven = CertificateFile::read(&text).unwrap().check().unwrap();
         assert_eq!(
-            matches!(proven, Verdict::Stable(_)),
+            matches!(proven, StabilityVerdict::Stable(_)),
             !name.starts_with("unstable"),
             "{name}"
         );
@@ -1006,12 +1006,12 @@ fn the_map_is_certified_but_for_a_few_points() {
     for point in map.points.iter().flatten() {
         let filters = Filters::Roots(point.roots.clone());
         match &point.verdict {
-            Verdict::Stable(forms) => filters.check_stable(forms).unwrap(),
-            Verdict::Unstable(product) => filters.check_unstable(product).unwrap(),
-            Verdict::Undecided { growth } => assert!(*growth < 1.0, "{growth}"),
+            StabilityVerdict::Stable(forms) => filters.check_stable(forms).unwrap(),
+            StabilityVerdict::Unstable(product) => filters.check_unstable(product).unwrap(),
+            StabilityVerdict::Undecided { growth } => assert!(*growth < 1.0, "{growth}"),
         }
         // Constant probabilities are one of the ways in which probabilities can be.
-        let is_stable = matches!(point.verdict, Verdict::Stable(_));
+        let is_stable = matches!(point.verdict, StabilityVerdict::Stable(_));
         assert!(!is_stable || point.frozen_radius < 1.0);
     }
 }
@@ -1076,7 +1076,10 @@ fn a_certified_filter_may_lock_into_the_wrong_mode() {
     // Property, in doubles: the bias of the constant velocity filter is (−5/2, −10, −20) exactly, the other copy is off by less than a
     // hundredth; the difference is far beyond any rounding.
     let certified = Filters::Roots([rational("1/3"), rational("1/2")]);
-    assert!(matches!(certified.decide(Depth::default()), Verdict::Stable(_)));
+    assert!(matches!(
+        certified.decide(Depth::default()),
+        StabilityVerdict::Stable(_)
+    ));
     let [locked, free] = instances::locked_errors(300).unwrap();
     assert!((locked - Vector3::new(-2.5, -10.0, -20.0)).norm() < 1e-6, "{locked}");
     assert!(free.norm() < 1e-2, "{free}");

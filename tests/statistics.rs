@@ -10,7 +10,7 @@
 use immaculate::gaussian::Gaussian;
 use immaculate::imm::{Failure, Step, failure::Cause};
 use immaculate::paper::Paper;
-use immaculate::paper::comparison::{Comparison, Quantity};
+use immaculate::paper::comparison::{Comparison, ErrorQuantity};
 use immaculate::paper::monte_carlo::{Generator, run};
 use immaculate::paper::result::{Figure, Reproduction};
 use immaculate::paper::scenario::Scenario;
@@ -142,7 +142,7 @@ fn the_figure_of_a_table_is_the_average_of_its_history() {
             scenario: &scenario,
             runs: &runs,
         };
-        for quantity in Quantity::ALL {
+        for quantity in ErrorQuantity::ALL {
             let figure = comparison.error(0, quantity).value;
             let history = comparison.rmse(0, quantity);
             let by_history = average(&history.iter().map(|rmse| rmse.value).collect::<Vec<f64>>());
@@ -159,7 +159,7 @@ fn the_figure_of_a_table_is_the_average_of_its_history() {
 #[test]
 fn a_quantity_is_the_error_of_its_components() {
     let error = Vector4::new(3.0, 5.0, 4.0, 12.0);
-    let squared = Quantity::ALL.map(|quantity| quantity.squared(&error));
+    let squared = ErrorQuantity::ALL.map(|quantity| quantity.squared(&error));
     assert_eq!(squared, [9.0, 25.0, 16.0, 144.0, 25.0, 169.0]);
 }
 
@@ -185,10 +185,10 @@ fn a_failed_run_is_named_and_left_out_of_the_errors() {
         scenario: &scenario,
         runs: &runs,
     };
-    assert_eq!(comparison.error(0, Quantity::X).value, 12.5_f64.sqrt());
-    assert_eq!(comparison.error(1, Quantity::X).value, 2.0_f64.sqrt());
+    assert_eq!(comparison.error(0, ErrorQuantity::X).value, 12.5_f64.sqrt());
+    assert_eq!(comparison.error(1, ErrorQuantity::X).value, 2.0_f64.sqrt());
     // A difference needs both: runs 1 and 3 only.
-    let difference = comparison.difference(0, 1, Quantity::X).value;
+    let difference = comparison.difference(0, 1, ErrorQuantity::X).value;
     assert_eq!(difference, 12.5_f64.sqrt() - 2.5_f64.sqrt());
     let reproduction = Reproduction::new(&scenario, 3, 1, &runs);
     assert_eq!(reproduction.filters[0].completed_runs, 2);
@@ -311,7 +311,7 @@ fn the_band_of_an_error_over_time_is_the_spread_of_repeated_experiments() {
                 runs: &runs,
             };
             (
-                comparison.rmse(0, Quantity::Position),
+                comparison.rmse(0, ErrorQuantity::Position),
                 comparison.mean_mode_probabilities(0),
             )
         })
@@ -723,7 +723,7 @@ fn every_figure_of_a_reproduction_is_that_of_its_runs() {
     );
     assert_eq!((two.completed_runs, two.failures.len()), (2, 0));
     // Squares of x: 1 and 7, so 4 ± 3 and its root 2 ± ¾. Velocities are 5 in both runs.
-    let errors = |filter: &str| Quantity::ALL.map(|quantity| shown.error(filter, quantity).unwrap());
+    let errors = |filter: &str| ErrorQuantity::ALL.map(|quantity| shown.error(filter, quantity).unwrap());
     let sure = |value: f64| Estimate {
         value,
         standard_error: 0.0,
@@ -743,9 +743,12 @@ fn every_figure_of_a_reproduction_is_that_of_its_runs() {
     }
     assert_eq!(
         two.rmse.iter().map(|history| history.quantity).collect::<Vec<_>>(),
-        Quantity::ALL
+        ErrorQuantity::ALL
     );
-    assert_eq!((two.rmse[0].values.len(), shown.error("three", Quantity::X)), (4, None));
+    assert_eq!(
+        (two.rmse[0].values.len(), shown.error("three", ErrorQuantity::X)),
+        (4, None)
+    );
     // 3 and 5: 4 ± 1; 1 and 2: 1.5 ± ½; and of their differences, 2 and 3.
     let estimate = |value: f64, standard_error: f64| Estimate { value, standard_error };
     assert_near(
@@ -764,7 +767,10 @@ fn every_figure_of_a_reproduction_is_that_of_its_runs() {
         .collect();
     assert_eq!(
         differences,
-        [("two", "one", Quantity::Position), ("two", "one", Quantity::Velocity)]
+        [
+            ("two", "one", ErrorQuantity::Position),
+            ("two", "one", ErrorQuantity::Velocity)
+        ]
     );
     assert_near(
         &[shown.differences[0].estimate, shown.differences[1].estimate],
@@ -844,10 +850,10 @@ fn a_figure_of_a_table_is_found_by_filter_and_by_what_it_is_of() {
     assert_eq!(value("two", Figure::FitError), Some(4.0));
     assert_eq!(value("three", Figure::FitError), None);
     // RMSE is 2 at every step, and so is its mean.
-    assert!((value("two", Figure::Error(Quantity::X)).unwrap() - 2.0).abs() < 1e-15);
-    assert_eq!(value("one", Figure::Error(Quantity::Y)), Some(4.0));
-    assert_eq!(value("three", Figure::Error(Quantity::X)), None);
-    let labels = Quantity::ALL.map(Quantity::label);
+    assert!((value("two", Figure::Error(ErrorQuantity::X)).unwrap() - 2.0).abs() < 1e-15);
+    assert_eq!(value("one", Figure::Error(ErrorQuantity::Y)), Some(4.0));
+    assert_eq!(value("three", Figure::Error(ErrorQuantity::X)), None);
+    let labels = ErrorQuantity::ALL.map(ErrorQuantity::label);
     assert_eq!(
         labels,
         [

@@ -18,13 +18,13 @@ use immaculate::model::{PolarComponent, Sensor};
 use immaculate::paper::simulation::Simulation;
 use immaculate::paper::specification::{Choices, InvalidChoice};
 use immaculate::paper::sustika2015::contestants::Bearings;
-use immaculate::paper::sustika2015::divergence::{self, Tally};
-use immaculate::paper::sustika2015::outcome::{Outcome, Track, outcomes};
-use immaculate::paper::sustika2015::scenario::Scenario;
+use immaculate::paper::sustika2015::divergence::{self, Divergences};
+use immaculate::paper::sustika2015::outcome::{RunOutcome, Track, outcomes};
+use immaculate::paper::sustika2015::scenario::RadarScenario;
 use immaculate::paper::sustika2015::sweep::{
-    self, Fit, Parameter, Point, Setting, Sweep, Trajectory as Swept, columns, line, settings,
+    self, Fit, Sweep, SweepPoint, SweepSetting, SweptParameter, SweptTrajectory as Swept, columns, line, settings,
 };
-use immaculate::paper::sustika2015::truth::{Motion, Noise, Trajectory, bearing_jumps};
+use immaculate::paper::sustika2015::truth::{Manoeuvre, Trajectory, TruthNoise, bearing_jumps};
 use immaculate::paper::sustika2015::{
     DEGREE, DURATION, INITIAL_POSITION, INITIAL_VELOCITY, MANOEUVRING_SECONDS, MEASUREMENT_DEVIATIONS, NOISE_DENSITY,
     TOOLBOX_SECONDS, scenario,
@@ -43,7 +43,7 @@ use std::f64::consts::PI;
 #[test]
 fn a_trajectory_without_noise_is_a_straight_line_at_constant_speed() {
     for manoeuvres in [&[][..], &TOOLBOX_SECONDS] {
-        let truth = Trajectory::new(manoeuvres, Noise::Free).draw(3, 1).truth;
+        let truth = Trajectory::new(manoeuvres, TruthNoise::Free).draw(3, 1).truth;
         assert_eq!(truth.len(), DURATION);
         for (k, state) in truth.iter().enumerate() {
             // Whole numbers: nothing is rounded.
@@ -58,7 +58,7 @@ fn a_trajectory_without_noise_is_a_straight_line_at_constant_speed() {
 
 #[test]
 fn an_acceleration_lasts_as_long_as_its_manoeuvre() {
-    let trajectory = Trajectory::new(&TOOLBOX_SECONDS, Noise::EachRun);
+    let trajectory = Trajectory::new(&TOOLBOX_SECONDS, TruthNoise::EachRun);
     for run in 0..20 {
         let truth = trajectory.draw(run, 1).truth;
         // The state at k seconds is the one with the index k − 1.
@@ -76,10 +76,10 @@ fn an_acceleration_lasts_as_long_as_its_manoeuvre() {
 #[test]
 fn the_printed_manoeuvres_are_the_times_of_constant_velocity_of_the_toolbox() {
     let manoeuvres = |seconds: &[[usize; 2]]| {
-        let motions = Trajectory::new(seconds, Noise::Free).motions;
+        let motions = Trajectory::new(seconds, TruthNoise::Free).motions;
         (2..)
             .zip(motions)
-            .filter(|(_, motion)| *motion == Motion::Manoeuvre)
+            .filter(|(_, motion)| *motion == Manoeuvre::Manoeuvre)
             .map(|(second, _)| second)
             .collect::<Vec<usize>>()
     };
@@ -97,19 +97,19 @@ fn the_noises_are_those_of_table_1() {
     // Statistical. Mean squares of n standard Gaussian numbers have the standard deviation √(2/n); seven of these are exceeded with a
     // probability of 3·10⁻¹² a comparison.
     let mut squares: [Vec<f64>; 4] = Default::default();
-    let trajectory = Trajectory::new(&TOOLBOX_SECONDS, Noise::EachRun);
+    let trajectory = Trajectory::new(&TOOLBOX_SECONDS, TruthNoise::EachRun);
     for run in 0..200 {
         let draw = trajectory.draw(run, 1);
         for (motion, pair) in trajectory.motions.iter().zip(draw.truth.windows(2)) {
             let transition = match motion {
-                Motion::Straight => constant_velocity_in_the_plane(&1.0),
-                Motion::Manoeuvre => constant_acceleration_in_the_plane(&1.0),
+                Manoeuvre::Straight => constant_velocity_in_the_plane(&1.0),
+                Manoeuvre::Manoeuvre => constant_acceleration_in_the_plane(&1.0),
             };
             let noise = pair[1] - transition * pair[0];
             // The last derivative that moves has the variance q T.
             let (kind, entry) = match motion {
-                Motion::Straight => (0, 2),
-                Motion::Manoeuvre => (1, 4),
+                Manoeuvre::Straight => (0, 2),
+                Manoeuvre::Manoeuvre => (1, 4),
             };
             squares[kind].extend([0, 1].map(|c| noise[entry + c] * noise[entry + c] / NOISE_DENSITY));
         }
@@ -144,15 +144,15 @@ fn residuals(measurements: &[Vector2<f64>], truth: &[Vector6<f64>]) -> Vec<Vecto
 
 #[test]
 fn the_noise_of_the_measurements_is_that_of_the_run_whatever_the_trajectory() {
-    let seen = |manoeuvres: &[[usize; 2]], noise: Noise, run: usize| {
+    let seen = |manoeuvres: &[[usize; 2]], noise: TruthNoise, run: usize| {
         let draw = Trajectory::new(manoeuvres, noise).draw(run, 1);
         (residuals(&draw.measurements, &draw.truth), draw)
     };
-    let (reference, straight) = seen(&[], Noise::EachRun, 4);
+    let (reference, straight) = seen(&[], TruthNoise::EachRun, 4);
     for (manoeuvres, noise) in [
-        (&TOOLBOX_SECONDS[..], Noise::EachRun),
-        (&[], Noise::OneTrajectory),
-        (&[], Noise::Free),
+        (&TOOLBOX_SECONDS[..], TruthNoise::EachRun),
+        (&[], TruthNoise::OneTrajectory),
+        (&[], TruthNoise::Free),
     ] {
         let (residuals, other) = seen(manoeuvres, noise, 4);
         assert_ne!(other.truth, straight.truth);
@@ -166,14 +166,14 @@ fn the_noise_of_the_measurements_is_that_of_the_run_whatever_the_trajectory() {
     }
     // One trajectory: the same truth in every run, that of the first, with other noise on the measurements.
     let (first, fifth) = (
-        seen(&[], Noise::OneTrajectory, 0).1,
-        seen(&[], Noise::OneTrajectory, 4).1,
+        seen(&[], TruthNoise::OneTrajectory, 0).1,
+        seen(&[], TruthNoise::OneTrajectory, 4).1,
     );
     assert_eq!(first.truth, fifth.truth);
-    assert_eq!(first, seen(&[], Noise::EachRun, 0).1);
+    assert_eq!(first, seen(&[], TruthNoise::EachRun, 0).1);
     assert_ne!(first.measurements, fifth.measurements);
     // Other seeds and other runs are other draws.
-    let trajectory = Trajectory::new(&[], Noise::EachRun);
+    let trajectory = Trajectory::new(&[], TruthNoise::EachRun);
     assert_ne!(trajectory.draw(0, 1), trajectory.draw(0, 2));
     assert_ne!(trajectory.draw(0, 1).truth, trajectory.draw(1, 1).truth);
 }
@@ -225,7 +225,7 @@ fn only_an_unwrapped_bearing_makes_a_filter_diverge_and_only_near_the_cut() {
     // Statistical, of all simulations with both filters' noises. No wrapped run diverged among 24 000 that were looked at, so that one does
     // with a probability below 1.3·10⁻⁴ (with 95 % certainty): another seed would find one among these 600 with a probability below 8 %.
     const RUNS: usize = 100;
-    let diverges = |outcome: &Outcome, filter: usize| outcome.fit(FitForm::JointNorm, filter).unwrap() > 20.0;
+    let diverges = |outcome: &RunOutcome, filter: usize| outcome.fit(FitForm::JointNorm, filter).unwrap() > 20.0;
     let (mut away, mut crossing, mut divergent) = (0, 0, 0);
     for (name, window) in [
         ("matched-straight", "toolbox"),
@@ -445,7 +445,7 @@ fn an_outcome_is_what_the_run_of_each_filter_is() {
         for (kept, track) in outcome.filters.iter().zip(&tracks) {
             let kept = kept.as_ref().unwrap();
             for (form, fit) in FitForm::ALL.into_iter().zip(kept.fits) {
-                let scenario = Scenario {
+                let scenario = RadarScenario {
                     fit_form: form,
                     ..scenario.clone()
                 };
@@ -477,7 +477,7 @@ fn an_outcome_is_what_the_run_of_each_filter_is() {
 /// Exact: halves and whole numbers.
 #[test]
 fn the_figures_of_a_point_are_those_of_its_outcomes() {
-    let outcome = |jumps: bool, fits: [Option<f64>; 3]| Outcome {
+    let outcome = |jumps: bool, fits: [Option<f64>; 3]| RunOutcome {
         jumps,
         to_cut: 1.0,
         filters: fits.map(|fit| {
@@ -494,7 +494,7 @@ fn the_figures_of_a_point_are_those_of_its_outcomes() {
         outcome(true, [Some(8.0), None, Some(30.0)]),
         outcome(true, [None, Some(10.0), Some(3.0)]),
     ];
-    let point = Point::of(&outcomes, FitForm::RootSumSquare);
+    let point = SweepPoint::of(&outcomes, FitForm::RootSumSquare);
     let [converted, wrapped, plain] = point.fits;
     assert_eq!(point.runs_with_jump, 3);
     // Of 1, 3 and 8 the one in the middle; of 3, 20, 20.5 and 30 the mean of the two there.
@@ -517,13 +517,13 @@ fn the_figures_of_a_point_are_those_of_its_outcomes() {
     );
     assert_eq!(point.plain_less_converted.value, 19.5);
     // Another form is another list of figures; and of no runs there is no median.
-    assert_eq!(Point::of(&outcomes, FitForm::JointNorm).fits[0].median, 6.0);
-    assert!(Point::of(&[], FitForm::JointNorm).fits[0].median.is_nan());
+    assert_eq!(SweepPoint::of(&outcomes, FitForm::JointNorm).fits[0].median, 6.0);
+    assert!(SweepPoint::of(&[], FitForm::JointNorm).fits[0].median.is_nan());
 }
 
 #[test]
 fn a_tally_is_the_sum_of_its_points_and_says_what_they_say() {
-    let point = |divergent: [usize; 3], with_jump: [usize; 3]| Point {
+    let point = |divergent: [usize; 3], with_jump: [usize; 3]| SweepPoint {
         fits: [0, 1, 2].map(|filter| Fit {
             divergent: divergent[filter],
             divergent_with_jump: with_jump[filter],
@@ -532,10 +532,10 @@ fn a_tally_is_the_sum_of_its_points_and_says_what_they_say() {
         ..few_points()[0]
     };
     let points = [point([1, 2, 30], [1, 1, 29]), point([0, 3, 40], [0, 2, 40])];
-    let tally = Tally::of(points.iter(), 50);
+    let tally = Divergences::of(points.iter(), 50);
     assert_eq!(
         tally,
-        Tally {
+        Divergences {
             runs: 100,
             divergent: [1, 5, 70],
             divergent_with_jump: [1, 3, 69]
@@ -569,7 +569,7 @@ fn a_tally_is_the_sum_of_its_points_and_says_what_they_say() {
             "The cause is not the azimuth: the wrapped filter diverges as often.",
         ),
     ] {
-        let words = Tally {
+        let words = Divergences {
             runs: 1,
             divergent: [0, wrapped, plain],
             divergent_with_jump: [0, 0, with_jump],
@@ -606,8 +606,8 @@ fn the_settings_are_those_of_table_3() {
     let written = |decimals: &[String]| decimals.iter().map(|text| text.parse().unwrap()).collect::<Vec<f64>>();
     let densities: Vec<String> = (1..=100).map(|k| format!("{}.{:02}", k / 100, k % 100)).collect();
     let degrees: Vec<String> = (1..=40).map(|k| format!("{}.{}", k / 10, k % 10)).collect();
-    assert_eq!(Parameter::NoiseDensity.values(), written(&densities));
-    assert_eq!(Parameter::BearingDegrees.values(), written(&degrees));
+    assert_eq!(SweptParameter::NoiseDensity.values(), written(&densities));
+    assert_eq!(SweptParameter::BearingDegrees.values(), written(&degrees));
     assert_eq!(settings().len(), 2 * (100 + 40));
 }
 
@@ -620,17 +620,17 @@ fn a_setting_with_the_parameters_of_the_truth_is_the_first_scenario() {
     ] {
         let first = sweep::point(&of(name), 3, 1, &|| ());
         for (parameter, value) in [
-            (Parameter::NoiseDensity, NOISE_DENSITY),
-            (Parameter::BearingDegrees, 1.0),
+            (SweptParameter::NoiseDensity, NOISE_DENSITY),
+            (SweptParameter::BearingDegrees, 1.0),
         ] {
-            let setting = Setting {
+            let setting = SweepSetting {
                 trajectory,
                 parameter,
                 value,
             };
             assert!(settings().contains(&setting));
             assert_eq!(sweep.point(&setting, &|| ()), first);
-            let other = Setting {
+            let other = SweepSetting {
                 value: 2.0 * value,
                 ..setting
             };
@@ -693,7 +693,7 @@ fn a_sweep_runs_all_trajectories_and_both_kinds_of_bearings() {
 #[test]
 fn the_table_of_a_sweep_says_what_was_run_and_has_a_line_a_setting() {
     let sweep = Sweep::new(&Choices::of("window", "printed"), 50, 7).unwrap();
-    let points: Vec<(Setting, Point)> = few_settings().into_iter().zip(few_points()).collect();
+    let points: Vec<(SweepSetting, SweepPoint)> = few_settings().into_iter().zip(few_points()).collect();
     let text = sweep.csv(&points);
     let mut lines = text.lines();
     assert_eq!(
@@ -743,9 +743,9 @@ fn a_sweep_runs_every_setting_in_order_and_counts_every_run() {
 #[test]
 fn a_column_of_the_table_holds_what_it_is_called() {
     let sweep = Sweep::new(&Choices::default(), 3, 1).unwrap();
-    let setting = Setting {
+    let setting = SweepSetting {
         trajectory: Swept::Manoeuvring,
-        parameter: Parameter::BearingDegrees,
+        parameter: SweptParameter::BearingDegrees,
         value: 4.0,
     };
     let (names, row) = (columns(), line(&setting, &sweep.point(&setting, &|| ())));
@@ -778,16 +778,16 @@ fn a_line_has_a_field_for_every_column() {
 
 // How the tests are written
 
-fn of(name: &str) -> Scenario {
+fn of(name: &str) -> RadarScenario {
     scenario(&Choices::of("scenario", name)).unwrap()
 }
 
-fn few_settings() -> Vec<Setting> {
+fn few_settings() -> Vec<SweepSetting> {
     settings()[..4].to_vec()
 }
 
 /// Points with all kinds of doubles: long ones, subnormal ones, infinite ones, none.
-fn few_points() -> Vec<Point> {
+fn few_points() -> Vec<SweepPoint> {
     let point = |values: [f64; 3]| {
         let [a, b, c] = values;
         let fit = Fit {
@@ -800,7 +800,7 @@ fn few_points() -> Vec<Point> {
             divergent_with_jump: 2,
             failed: 1,
         };
-        Point {
+        SweepPoint {
             runs_with_jump: 7,
             fits: [fit, Fit { median: b, ..fit }, Fit { divergent: 50, ..fit }],
             unscented_less_converted: Estimate {
@@ -822,7 +822,7 @@ fn few_points() -> Vec<Point> {
 }
 
 /// The numbers of a point to the bit, in the order of the columns: NaN is equal to itself.
-fn bits(point: &Point) -> Vec<u64> {
+fn bits(point: &SweepPoint) -> Vec<u64> {
     let of_estimate = |estimate: &Estimate| [estimate.value.to_bits(), estimate.standard_error.to_bits()];
     let of_fit = |fit: &Fit| {
         let counts = [fit.divergent, fit.divergent_with_jump, fit.failed].map(|count| (count as f64).to_bits());

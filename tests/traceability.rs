@@ -5,7 +5,7 @@
 //! everything has its place; that what stands there is right is the other files' work.
 
 use immaculate::book::doc::{Doc, backticked};
-use immaculate::book::reference::{Reference, citations, headings};
+use immaculate::book::reference::{EquationReference, citations, headings};
 use immaculate::book::source::{Item, items_of, source_files, tests};
 use immaculate::model::Sensor;
 use immaculate::model::motion::acceleration_input;
@@ -19,7 +19,7 @@ use std::path::Path;
 
 #[test]
 fn every_equation_is_realised_by_an_item_of_the_source() {
-    let realised: BTreeSet<Reference> = items().iter().flat_map(|item| headings(&item.doc)).collect();
+    let realised: BTreeSet<EquationReference> = items().iter().flat_map(|item| headings(&item.doc)).collect();
     let missing: Vec<_> = equations().difference(&realised).cloned().collect();
     assert!(
         missing.is_empty(),
@@ -48,7 +48,7 @@ fn every_equation_named_in_the_source_is_a_row_of_the_specification() {
 fn an_equation_is_realised_by_an_item_and_not_by_the_head_of_a_file_or_a_comment() {
     for file in source_files() {
         let of_items = items_of(&file).unwrap();
-        let realised: BTreeSet<Reference> = of_items.iter().flat_map(|item| headings(&item.doc)).collect();
+        let realised: BTreeSet<EquationReference> = of_items.iter().flat_map(|item| headings(&item.doc)).collect();
         for named in headings(&file.text.replace("///", "").replace("//!", "")) {
             assert!(
                 realised.contains(&named),
@@ -358,8 +358,8 @@ fn the_map_names_a_room_that_realises_each_printed_number() {
             mapped.insert(number);
         }
     }
-    let is_printed = |equation: &Reference| equation.label.parse::<u32>().is_ok();
-    let printed: BTreeSet<Reference> = equations().into_iter().filter(is_printed).collect();
+    let is_printed = |equation: &EquationReference| equation.label.parse::<u32>().is_ok();
+    let printed: BTreeSet<EquationReference> = equations().into_iter().filter(is_printed).collect();
     assert_eq!(mapped, printed, "all of them, once or more");
 }
 
@@ -755,13 +755,13 @@ fn is_equation_room(path: &str) -> bool {
 }
 
 /// All rows of the specification, with a number or a name.
-fn equations() -> BTreeSet<Reference> {
+fn equations() -> BTreeSet<EquationReference> {
     let of = |paper: Paper| {
         let specification = paper.specification();
         let equations = specification.equations.iter().chain(&specification.unnumbered);
         equations.map(move |equation| match equation.number {
-            Some(number) => Reference::new(paper, number),
-            None => Reference::new(paper, equation.name.as_deref().unwrap_or_default()),
+            Some(number) => EquationReference::new(paper, number),
+            None => EquationReference::new(paper, equation.name.as_deref().unwrap_or_default()),
         })
     };
     Paper::ALL.into_iter().flat_map(of).collect()

@@ -18,27 +18,27 @@ use immaculate::oracle::problem::FilterFile;
 use immaculate::oracle::subject::{Broken, Precision, Ready};
 use immaculate::oracle::trace::{Dimensions, Trace};
 use immaculate::oracle::variant::{self, Variant};
-use immaculate::paper::comparison::Quantity as Measured;
+use immaculate::paper::comparison::ErrorQuantity as Measured;
 use immaculate::paper::result::{
     Consistency, Delay, Difference, ErrorFigure, ErrorHistory, FailedRun, FirstRun, FitDifference, Performance,
     Reproduction,
 };
 use immaculate::paper::specification::Choices;
-use immaculate::paper::sustika2015::divergence::Row;
-use immaculate::paper::sustika2015::sweep::{Fit, Parameter, Point, Setting, Trajectory};
-use immaculate::paper::verdict::{Judgement as Claim, Verdict as Answer};
+use immaculate::paper::sustika2015::divergence::DivergenceRow;
+use immaculate::paper::sustika2015::sweep::{Fit, SweepPoint, SweepSetting, SweptParameter, SweptTrajectory};
+use immaculate::paper::verdict::{JudgedClaim as Claim, Verdict as Answer};
 use immaculate::paper::{Effort, Paper};
 use immaculate::report;
 use immaculate::report::long_term::{Panel, heat_maps};
-use immaculate::report::page::content::{Content, Extent, OfPaper, Runs};
-use immaculate::report::reproduction::Comparison;
+use immaculate::report::page::content::{Content, Extent, OfPaper, OfRuns};
+use immaculate::report::reproduction::SideBySide;
 use immaculate::rule::RuleName;
 use immaculate::rule::unscented::Parameters;
 use immaculate::statistics::Estimate;
 use immaculate::steady::certificate::Quadratics;
 use immaculate::steady::map::Map;
 use immaculate::steady::simulated::Grid;
-use immaculate::steady::verdict::{Depth, Filters, Verdict};
+use immaculate::steady::verdict::{Depth, Filters, StabilityVerdict};
 use nalgebra::Matrix3;
 use std::fmt::Write;
 use std::time::Duration;
@@ -446,15 +446,15 @@ fn the_sweep_and_what_makes_a_filter_diverge() {
 }
 
 /// Settings of a sweep, twenty of each kind, with a value that grows.
-fn sweep() -> Vec<(Setting, f64)> {
+fn sweep() -> Vec<(SweepSetting, f64)> {
     let mut sweep = Vec::new();
-    for trajectory in Trajectory::ALL {
-        for parameter in Parameter::ALL {
+    for trajectory in SweptTrajectory::ALL {
+        for parameter in SweptParameter::ALL {
             let values = (1..=20).map(|k| f64::from(k) / 10.0);
-            let factor = f64::from(1 + u8::from(trajectory == Trajectory::Manoeuvring));
-            let shift = f64::from(u8::from(parameter == Parameter::BearingDegrees)) / 4.0;
+            let factor = f64::from(1 + u8::from(trajectory == SweptTrajectory::Manoeuvring));
+            let shift = f64::from(u8::from(parameter == SweptParameter::BearingDegrees)) / 4.0;
             sweep.extend(values.map(|value| {
-                let setting = Setting {
+                let setting = SweepSetting {
                     trajectory,
                     parameter,
                     value,
@@ -466,12 +466,12 @@ fn sweep() -> Vec<(Setting, f64)> {
     sweep
 }
 
-fn point(value: f64) -> Point {
+fn point(value: f64) -> SweepPoint {
     let estimate = |value| Estimate {
         value,
         standard_error: 0.05,
     };
-    Point {
+    SweepPoint {
         runs_with_jump: 4,
         fits: [0, 1, 2].map(|filter| Fit {
             mean: estimate(value + filter as f64),
@@ -485,8 +485,8 @@ fn point(value: f64) -> Point {
     }
 }
 
-fn rows() -> [Row; 2] {
-    let row = |scenario, window, value| Row {
+fn rows() -> [DivergenceRow; 2] {
+    let row = |scenario, window, value| DivergenceRow {
         scenario,
         window,
         point: point(value),
@@ -633,7 +633,7 @@ fn the_pictures_of_a_reproduction() {
     of_paper.motions = vec!["constant velocity", "constant acceleration"];
     picture("path_with_sensor", report::path::path(&of_paper, &first_run).unwrap());
     let mut comparisons = report::reproduction::published_and_computed(Paper::Liu2017, &of_paper);
-    let published = |comparisons: &[Comparison]| {
+    let published = |comparisons: &[SideBySide]| {
         let drawn = report::published::published_and_computed(Paper::Liu2017, comparisons);
         drawn.unwrap().unwrap()
     };
@@ -656,7 +656,7 @@ fn the_pictures_of_a_sweep() {
             .collect();
         picture(
             name,
-            report::fit_error::draw(&points, Trajectory::Manoeuvring, 50).unwrap(),
+            report::fit_error::draw(&points, SweptTrajectory::Manoeuvring, 50).unwrap(),
         );
     }
 }
@@ -753,14 +753,14 @@ fn the_words_of_the_page() {
             map_points: 5,
         },
         papers: Paper::ALL.map(of_paper).to_vec(),
-        sweep: Runs {
+        sweep: OfRuns {
             runs: 50,
             results: sweep()
                 .into_iter()
                 .map(|(setting, value)| (setting, point(value)))
                 .collect(),
         },
-        divergence: Runs {
+        divergence: OfRuns {
             runs: 50,
             results: rows().to_vec(),
         },
@@ -873,7 +873,7 @@ fn pairs_of_fixed_gain_filters_that_are_stable_unstable_and_undecided() {
         };
         let filters = Filters::Roots(roots);
         let verdict = filters.decide(depth);
-        let answer = report::stability::Answer::new(&filters, verdict);
+        let answer = report::stability::StabilityAnswer::new(&filters, verdict);
         text.push_str(&report::stability::text("Two filters.", &answer));
         let _ = write!(
             text,
@@ -882,11 +882,11 @@ fn pairs_of_fixed_gain_filters_that_are_stable_unstable_and_undecided() {
         );
     }
     // Eight forms, of which four are shown; that they prove nothing is not asked here.
-    let verdict = Verdict::Stable(Quadratics {
+    let verdict = StabilityVerdict::Stable(Quadratics {
         edges: Quadratics::<3>::memory(2, 3),
         forms: (1..=8).map(|k| Matrix3::from_diagonal_element(q(k, 1))).collect(),
     });
-    let answer = report::stability::Answer::new(&Filters::Roots([q(1, 2), q(1, 2)]), verdict);
+    let answer = report::stability::StabilityAnswer::new(&Filters::Roots([q(1, 2), q(1, 2)]), verdict);
     text.push_str(&report::stability::text("Two filters.", &answer));
     insta::assert_snapshot!("stability", text);
 }
@@ -898,7 +898,7 @@ fn the_map_of_stability_as_text_and_data() {
         .points
         .iter()
         .flatten()
-        .filter(|point| matches!(point.verdict, Verdict::Stable(_)))
+        .filter(|point| matches!(point.verdict, StabilityVerdict::Stable(_)))
         .count();
     assert_eq!(counted, map.counts()[0]);
     let parts = [

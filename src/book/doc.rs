@@ -3,7 +3,7 @@
 //! After this file the reader knows the order in which an equation is documented: name and numbers; formula; dictionary; why; example;
 //! errors; errata; evidence.
 
-use super::reference::{Reference, heading, headings};
+use super::reference::{EquationReference, heading, headings};
 
 /// What a part of a doc comment is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -45,7 +45,7 @@ pub struct Doc {
     /// What the first paragraph says after the numbers.
     pub remark: String,
     /// The equations that the item realises.
-    pub realises: Vec<Reference>,
+    pub realises: Vec<EquationReference>,
     /// The rest, part by part.
     pub parts: Vec<Part>,
 }

@@ -28,7 +28,7 @@ use crate::paper::Paper;
 use crate::paper::specification::{Equation, Specification};
 use doc::{Doc, Named};
 use markup::plain;
-use reference::Reference;
+use reference::EquationReference;
 use source::{Item, Test};
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
@@ -44,7 +44,7 @@ pub struct Realisation {
 
 /// A test that is evidence for an equation.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Evidence {
+pub struct TestEvidence {
     /// The test's name, which is the law that it holds.
     pub test: String,
     /// The kind of evidence, in the words of the doc comment; else of the test's file.
@@ -61,13 +61,13 @@ pub struct Entry {
     /// The paper.
     pub paper: Paper,
     /// Its number or name.
-    pub reference: Reference,
+    pub reference: EquationReference,
     /// Its row in `spec/`.
     pub equation: &'static Equation,
     /// The items that realise it.
     pub realisations: Vec<&'static Realisation>,
     /// The tests that hold it.
-    pub evidence: Vec<Evidence>,
+    pub evidence: Vec<TestEvidence>,
     /// The values of a filter's step that it is an equation of; none outside a step.
     pub quantities: Vec<Quantity>,
     /// The mistakes that are made in it, and the conventions that change it.
@@ -143,7 +143,7 @@ pub fn realisations() -> &'static [Realisation] {
 fn entry(paper: Paper, equation: &'static Equation) -> Entry {
     let number = equation.number.map(|number| number.to_string());
     let label = number.or_else(|| equation.name.clone()).unwrap_or_default();
-    let reference = Reference::new(paper, label);
+    let reference = EquationReference::new(paper, label);
     let all = realisations().iter();
     let realisations: Vec<&Realisation> = all.filter(|one| one.doc.realises.contains(&reference)).collect();
     let named = Quantity::ALL.into_iter();
@@ -161,21 +161,21 @@ fn entry(paper: Paper, equation: &'static Equation) -> Entry {
 }
 
 /// The tests that the items name, then those of the items that they refer to, then the erratum's.
-fn evidence(equation: &Equation, realisations: &[&Realisation]) -> Vec<Evidence> {
+fn evidence(equation: &Equation, realisations: &[&Realisation]) -> Vec<TestEvidence> {
     let mut named: Vec<Named> = Vec::new();
     for realisation in realisations {
         named.extend(evidence_of_item(realisation, 0));
     }
     let erratum = equation.erratum.as_ref().and_then(|erratum| erratum.test.clone());
     named.extend(erratum.map(|test| Named { test, kind: None }));
-    let mut found: Vec<Evidence> = Vec::new();
+    let mut found: Vec<TestEvidence> = Vec::new();
     for Named { test, kind } in named {
         let Some(Test { path, line }) = source::tests().get(&test) else {
             continue;
         };
         if found.iter().all(|other| other.test != test) {
             let kind = kind.unwrap_or_else(|| kind_of_file(path));
-            found.push(Evidence {
+            found.push(TestEvidence {
                 test,
                 kind,
                 path: path.clone(),

@@ -8,14 +8,14 @@ use std::fmt;
 
 /// An equation as comments name it.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Reference {
+pub struct EquationReference {
     /// The paper's key.
     pub paper: &'static str,
     /// The printed number in digits, or the name of an equation without one.
     pub label: String,
 }
 
-impl Reference {
+impl EquationReference {
     /// The reference to an equation of a paper.
     pub fn new(paper: Paper, label: impl fmt::Display) -> Self {
         Self {
@@ -30,14 +30,14 @@ impl Reference {
     }
 }
 
-impl fmt::Display for Reference {
+impl fmt::Display for EquationReference {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(f, "{} ({})", self.paper, self.label)
     }
 }
 
 /// All equations that a text names: a key, a blank, a list.
-pub fn citations(text: &str) -> Vec<Reference> {
+pub fn citations(text: &str) -> Vec<EquationReference> {
     let mut found = Vec::new();
     for paper in Paper::ALL {
         let key = paper.key();
@@ -51,14 +51,14 @@ pub fn citations(text: &str) -> Vec<Reference> {
 }
 
 /// The equations that a doc comment says its item realises: those of the lists after a dash.
-pub fn headings(doc: &str) -> Vec<Reference> {
+pub fn headings(doc: &str) -> Vec<EquationReference> {
     doc.match_indices('—')
         .flat_map(|(at, dash)| heading(&doc[at + dash.len()..]).0)
         .collect()
 }
 
 /// The lists at the start of a text, one paper after the other, and what follows them.
-pub fn heading(text: &str) -> (Vec<Reference>, &str) {
+pub fn heading(text: &str) -> (Vec<EquationReference>, &str) {
     let mut found = Vec::new();
     let mut rest = text;
     loop {
@@ -81,7 +81,7 @@ pub fn heading(text: &str) -> (Vec<Reference>, &str) {
 }
 
 /// The equations of a list `(1), (3)-(5), (a-name)` at the start of a text, and what follows it.
-fn list(paper: Paper, text: &str) -> (Vec<Reference>, &str) {
+fn list(paper: Paper, text: &str) -> (Vec<EquationReference>, &str) {
     let mut found = Vec::new();
     let mut rest = text;
     loop {
@@ -96,8 +96,8 @@ fn list(paper: Paper, text: &str) -> (Vec<Reference>, &str) {
         let range = after.strip_prefix('-').and_then(in_parentheses);
         let last = range.and_then(|(last, _)| last.parse::<u32>().ok());
         match (first.parse::<u32>(), last) {
-            (Ok(first), Some(last)) => found.extend((first..=last).map(|number| Reference::new(paper, number))),
-            _ => found.push(Reference::new(paper, first)),
+            (Ok(first), Some(last)) => found.extend((first..=last).map(|number| EquationReference::new(paper, number))),
+            _ => found.push(EquationReference::new(paper, first)),
         }
         rest = range.map_or(after, |(_, after)| after);
     }

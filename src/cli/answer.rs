@@ -22,7 +22,7 @@ enum Show {
 
 #[derive(Args)]
 #[command(after_help = "Try: immaculate check -- immaculate answer --plant mixed-spread-omitted")]
-pub struct Answer {
+pub struct AnswerArguments {
     /// Plant a variant of the catalogue, to see how it is found; may be given again (`immaculate variants` lists them)
     #[arg(long = "plant", value_name = "VARIANT")]
     variants: Vec<String>,
@@ -31,7 +31,7 @@ pub struct Answer {
     show: Show,
 }
 
-pub fn run(arguments: &Answer) -> Result<Done, Refusal> {
+pub fn run(arguments: &AnswerArguments) -> Result<Done, Refusal> {
     for id in &arguments.variants {
         if find(id).is_none() {
             return Err(Refusal::request(format!(

@@ -17,7 +17,7 @@ use serde_json::json;
 use std::path::{Path, PathBuf};
 
 #[derive(Args)]
-pub struct Cases {
+pub struct CasesArguments {
     #[command(subcommand)]
     action: Action,
 }
@@ -71,7 +71,7 @@ enum Format {
     Certificate,
 }
 
-pub fn run(arguments: &Cases) -> Result<Done, Refusal> {
+pub fn run(arguments: &CasesArguments) -> Result<Done, Refusal> {
     match &arguments.action {
         Action::List { select, json } => list(select, *json),
         Action::Show { id, json } => show(id, *json),

@@ -19,7 +19,7 @@ use std::time::Duration;
     after_help = "Exit status: 0 all right, 1 something is wrong, 2 the check could not be made or nothing was judged.\n\n\
     The protocol and the file formats are in spec/formats.md; examples in several languages are in tests/adapters."
 )]
-pub struct Check {
+pub struct CheckArguments {
     /// The program under test and its arguments; it is started once and spoken to in JSON lines
     #[arg(last = true, value_name = "COMMAND")]
     command: Vec<String>,
@@ -36,7 +36,7 @@ pub struct Check {
     json: bool,
 }
 
-pub fn run(arguments: &Check) -> Result<Done, Refusal> {
+pub fn run(arguments: &CheckArguments) -> Result<Done, Refusal> {
     let mut subject: Box<dyn Subject> = match &arguments.answers {
         Some(path) => Box::new(Folder { path: path.clone() }),
         None if arguments.command.is_empty() => {

@@ -9,7 +9,7 @@ use immaculate::report;
 use serde_json::json;
 
 #[derive(Args)]
-pub struct Choices {
+pub struct ChoicesArguments {
     /// The papers; all when none is given [possible: derbez2000, sustika2015, zhu2016, liu2017]
     papers: Vec<Paper>,
     /// Print JSON instead of text
@@ -17,7 +17,7 @@ pub struct Choices {
     json: bool,
 }
 
-pub fn run(arguments: &Choices) -> Done {
+pub fn run(arguments: &ChoicesArguments) -> Done {
     let papers = papers(&arguments.papers);
     if arguments.json {
         let parameters =

@@ -11,7 +11,7 @@ use immaculate::report;
 use serde_json::json;
 
 #[derive(Args)]
-pub struct Claims {
+pub struct ClaimsArguments {
     /// The papers; all when none is given [possible: derbez2000, sustika2015, zhu2016, liu2017]
     papers: Vec<Paper>,
     /// The number of Monte-Carlo runs; when not given the paper's own, and 4000 of sustika2015, whose 50 tell little. At most
@@ -26,7 +26,7 @@ pub struct Claims {
     json: bool,
 }
 
-pub fn run(arguments: &Claims) -> Result<Done, Refusal> {
+pub fn run(arguments: &ClaimsArguments) -> Result<Done, Refusal> {
     let effort = effort(arguments.runs, arguments.seed);
     check_that_memory_does(&papers(&arguments.papers), effort)?;
     let bar = bar(0, "{spinner} judging: {pos} runs, {elapsed}");

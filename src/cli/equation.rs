@@ -9,7 +9,7 @@ use immaculate::report;
 use serde_json::json;
 
 #[derive(Args)]
-pub struct Equation {
+pub struct EquationArguments {
     /// A paper's key and a number or name (`zhu2016 56`), the name of a value (`mixed.covariance`) or of a function
     /// (`mixture_covariance`); a paper alone, or nothing, lists all
     #[arg(value_name = "ID")]
@@ -19,7 +19,7 @@ pub struct Equation {
     json: bool,
 }
 
-pub fn run(arguments: &Equation) -> Result<Done, Refusal> {
+pub fn run(arguments: &EquationArguments) -> Result<Done, Refusal> {
     let name = arguments.name.join(" ");
     let found: Vec<&Entry> = if name.trim().is_empty() {
         entries().iter().collect()

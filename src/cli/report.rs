@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 /// Writes one HTML page: the papers' figures and tables, their claims with verdict and evidence, their errata, and the book of equations.
 /// It needs no network to be read. With the papers' numbers of runs it takes some minutes.
 #[derive(Args)]
-pub struct Report {
+pub struct ReportArguments {
     /// The file that is written
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
@@ -30,7 +30,7 @@ pub struct Report {
 const MAP_POINTS: usize = 49;
 
 /// Computes the page and writes it.
-pub fn run(arguments: &Report) -> Result<Done, Refusal> {
+pub fn run(arguments: &ReportArguments) -> Result<Done, Refusal> {
     let extent = Extent {
         effort: effort(arguments.runs, arguments.seed),
         map_points: MAP_POINTS,

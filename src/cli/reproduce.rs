@@ -10,12 +10,12 @@ use immaculate::paper::specification::Choices;
 use immaculate::paper::sustika2015::divergence;
 use immaculate::paper::{Effort, Paper};
 use immaculate::report;
-use immaculate::report::reproduction::Comparison;
+use immaculate::report::reproduction::SideBySide;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
 #[derive(Args)]
-pub struct Reproduce {
+pub struct ReproduceArguments {
     /// The papers; all when none is given [possible: derbez2000, sustika2015, zhu2016, liu2017]
     papers: Vec<Paper>,
     /// The number of Monte-Carlo runs, all of which are kept in memory; the paper's own when not given
@@ -43,7 +43,7 @@ pub struct Reproduce {
 }
 
 /// Reruns the papers' simulations.
-pub fn run(arguments: &Reproduce) -> Result<Done, Refusal> {
+pub fn run(arguments: &ReproduceArguments) -> Result<Done, Refusal> {
     let papers = papers(&arguments.papers);
     let chosen = Choices::parse(&arguments.choices).map_err(Refusal::request)?;
     if arguments.sweep {
@@ -99,7 +99,7 @@ struct Planned {
 }
 
 /// What is to be run.
-fn plan(arguments: &Reproduce, papers: &[Paper], chosen: &Choices) -> Result<Vec<Planned>, Refusal> {
+fn plan(arguments: &ReproduceArguments, papers: &[Paper], chosen: &Choices) -> Result<Vec<Planned>, Refusal> {
     let mut plan = Vec::new();
     for &paper in papers {
         let chosen = paper.specification().choices_of_this_paper(chosen);
@@ -122,11 +122,11 @@ fn plan(arguments: &Reproduce, papers: &[Paper], chosen: &Choices) -> Result<Vec
 
 /// Runs a simulation with its open choices: the text, the same as JSON, and the published figures beside the computed ones.
 fn one_simulation(
-    arguments: &Reproduce,
+    arguments: &ReproduceArguments,
     planned: &Planned,
     effort: Effort,
     advance: Progress,
-) -> Result<(String, serde_json::Value, Vec<Comparison>), Refusal> {
+) -> Result<(String, serde_json::Value, Vec<SideBySide>), Refusal> {
     let paper = planned.paper;
     let reproductions = planned
         .choices
@@ -154,10 +154,10 @@ fn one_simulation(
 }
 
 /// The published figures of each paper beside the computed ones of all its simulations, as figures.
-fn write_published(directory: &Path, published: &[(Paper, Vec<Comparison>)]) -> Result<(), Refusal> {
+fn write_published(directory: &Path, published: &[(Paper, Vec<SideBySide>)]) -> Result<(), Refusal> {
     for of_paper in published.chunk_by(|a, b| a.0 == b.0) {
         let paper = of_paper[0].0;
-        let comparisons: Vec<Comparison> = of_paper.iter().flat_map(|(_, of_one)| of_one.clone()).collect();
+        let comparisons: Vec<SideBySide> = of_paper.iter().flat_map(|(_, of_one)| of_one.clone()).collect();
         if let Some(figure) = report::published::published_and_computed(paper, &comparisons) {
             let name = format!("{}-published.svg", paper.key());
             write_file(&directory.join(name), &figure_of(figure)?)?;
@@ -176,7 +176,7 @@ fn conversions(directory: Option<&Path>) -> Result<String, Refusal> {
 }
 
 /// Scenario 3 of sustika2015 in the place of the papers' runs.
-fn sweep(arguments: &Reproduce, papers: &[Paper], chosen: &Choices) -> Result<String, Refusal> {
+fn sweep(arguments: &ReproduceArguments, papers: &[Paper], chosen: &Choices) -> Result<String, Refusal> {
     if !arguments.papers.is_empty() && papers != [Paper::Sustika2015] {
         return Err(Refusal::request("sustika2015 alone has a sweep"));
     }

@@ -10,7 +10,7 @@ use immaculate::rule::{RuleName, unscented};
 use serde_json::json;
 
 #[derive(Args)]
-pub struct Rule {
+pub struct RuleArguments {
     /// The rule's name: cubature-3, unscented, cubature-5, simplex-5, gauss-hermite-2 to -5, and the printed forms
     /// cubature-5-printed, simplex-5-printed-11, simplex-5-printed-16
     name: String,
@@ -31,7 +31,7 @@ pub struct Rule {
     json: bool,
 }
 
-pub fn run(arguments: &Rule) -> Result<Done, Refusal> {
+pub fn run(arguments: &RuleArguments) -> Result<Done, Refusal> {
     let mut name: RuleName = arguments.name.parse().map_err(Refusal::request)?;
     let parameters = [&arguments.alpha, &arguments.beta, &arguments.kappa];
     if parameters.iter().any(|parameter| parameter.is_some()) {
@@ -49,7 +49,7 @@ pub fn run(arguments: &Rule) -> Result<Done, Refusal> {
 }
 
 /// The parameters that are given, the others as in Julier and Uhlmann's original form.
-fn unscented_parameters(arguments: &Rule) -> Result<unscented::Parameters, Refusal> {
+fn unscented_parameters(arguments: &RuleArguments) -> Result<unscented::Parameters, Refusal> {
     let mut parameters = unscented::Parameters::for_gaussian(arguments.dimension);
     let given = [
         ("alpha", &arguments.alpha, &mut parameters.alpha),

@@ -17,7 +17,7 @@ use std::path::PathBuf;
 #[command(
     after_help = "Exit status: 0 an answer was given (undecided is one), 1 a certificate that was checked proves nothing, 2 bad input."
 )]
-pub struct Stability {
+pub struct StabilityArguments {
     /// The scan time t, s
     #[arg(long, value_name = "T", default_value = "2", allow_negative_numbers = true)]
     interval: String,
@@ -68,7 +68,7 @@ pub struct Stability {
     json: bool,
 }
 
-pub fn run(arguments: &Stability) -> Result<Done, Refusal> {
+pub fn run(arguments: &StabilityArguments) -> Result<Done, Refusal> {
     if let Some(path) = &arguments.check {
         return check(path, arguments.json);
     }
@@ -77,7 +77,7 @@ pub fn run(arguments: &Stability) -> Result<Done, Refusal> {
     }
     let (filters_file, about) = described(arguments);
     let filters = filters_file.filters().map_err(Refusal::request)?;
-    let answer = stability::Answer::new(&filters, filters.decide(depth(arguments)));
+    let answer = stability::StabilityAnswer::new(&filters, filters.decide(depth(arguments)));
     let certificate = CertificateFile::new(about.clone(), filters_file, &answer.verdict);
     if let Some(path) = &arguments.certificate {
         let Some(certificate) = &certificate else {
@@ -95,7 +95,7 @@ pub fn run(arguments: &Stability) -> Result<Done, Refusal> {
     Ok(text.into())
 }
 
-fn depth(arguments: &Stability) -> Depth {
+fn depth(arguments: &StabilityArguments) -> Depth {
     Depth {
         word: arguments.word.into(),
         memory: arguments.memory.into(),
@@ -104,7 +104,7 @@ fn depth(arguments: &Stability) -> Depth {
 }
 
 /// The filters that the arguments name, as a certificate has them, and in words.
-fn described(arguments: &Stability) -> (FiltersFile, String) {
+fn described(arguments: &StabilityArguments) -> (FiltersFile, String) {
     if let Some([v, a]) = arguments.roots.as_deref() {
         let about = format!(
             "Two fixed-gain filters with the damping roots {v} (constant velocity) and {a} (constant acceleration)."
@@ -139,7 +139,7 @@ fn check(path: &std::path::Path, json: bool) -> Result<Done, Refusal> {
     }
 }
 
-fn map(arguments: &Stability) -> Result<Done, Refusal> {
+fn map(arguments: &StabilityArguments) -> Result<Done, Refusal> {
     if arguments.from >= arguments.to {
         return Err(Refusal::request("`--from` must be below `--to`"));
     }

@@ -7,7 +7,7 @@ use super::{Refusal, json_text, make_directory, write_file};
 use immaculate::paper::Effort;
 use immaculate::paper::specification::Choices;
 use immaculate::paper::sustika2015::RUNS;
-use immaculate::paper::sustika2015::sweep::{Point, Setting, Sweep, Trajectory, settings};
+use immaculate::paper::sustika2015::sweep::{Sweep, SweepPoint, SweepSetting, SweptTrajectory, settings};
 use immaculate::report::fit_error;
 use serde_json::json;
 use std::path::Path;
@@ -35,9 +35,9 @@ pub fn run(choices: &Choices, effort: Effort, directory: Option<&Path>, is_json:
 }
 
 /// The points as a table, the figures, and the points as JSON.
-fn write_files(sweep: &Sweep, points: &[(Setting, Point)], directory: &Path) -> Result<(), Refusal> {
+fn write_files(sweep: &Sweep, points: &[(SweepSetting, SweepPoint)], directory: &Path) -> Result<(), Refusal> {
     write_file(&directory.join("sustika2015-sweep.csv"), &sweep.csv(points))?;
-    for (trajectory, name) in Trajectory::ALL.into_iter().zip(["figure-2", "figure-4"]) {
+    for (trajectory, name) in SweptTrajectory::ALL.into_iter().zip(["figure-2", "figure-4"]) {
         let figure = fit_error::draw(points, trajectory, sweep.runs);
         let figure = figure.map_err(|error| Refusal::Output(error.to_string()))?;
         write_file(&directory.join(format!("sustika2015-{name}.svg")), &figure)?;
@@ -48,7 +48,7 @@ fn write_files(sweep: &Sweep, points: &[(Setting, Point)], directory: &Path) -> 
     )
 }
 
-fn as_json(sweep: &Sweep, points: &[(Setting, Point)]) -> serde_json::Value {
+fn as_json(sweep: &Sweep, points: &[(SweepSetting, SweepPoint)]) -> serde_json::Value {
     let points = points
         .iter()
         .map(|(setting, point)| json!({ "setting": setting, "point": point }));

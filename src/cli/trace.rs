@@ -14,7 +14,7 @@ use serde_json::json;
 use std::path::PathBuf;
 
 #[derive(Args)]
-pub struct Trace {
+pub struct TraceArguments {
     /// The problem file (`-` for standard input), or the id of a published case
     file: PathBuf,
     /// Print so many certified digits of every value, proven by enclosure, instead of doubles
@@ -28,7 +28,7 @@ pub struct Trace {
     csv: bool,
 }
 
-pub fn run(arguments: &Trace) -> Result<Done, Refusal> {
+pub fn run(arguments: &TraceArguments) -> Result<Done, Refusal> {
     let name = arguments.file.display().to_string();
     let published = immaculate::oracle::case::all()
         .map_err(Refusal::request)?

@@ -9,7 +9,7 @@ use immaculate::report;
 use serde_json::json;
 
 #[derive(Args)]
-pub struct Variants {
+pub struct VariantsArguments {
     /// One variant in full; all in a table when none is given
     id: Option<String>,
     /// Print JSON instead of text
@@ -17,7 +17,7 @@ pub struct Variants {
     json: bool,
 }
 
-pub fn run(arguments: &Variants) -> Result<Done, Refusal> {
+pub fn run(arguments: &VariantsArguments) -> Result<Done, Refusal> {
     let Some(id) = &arguments.id else {
         if arguments.json {
             return Ok(json_text(

@@ -17,7 +17,7 @@ use crate::model::formula::{Fault, InvalidFormula, InvalidName, check_names};
 use crate::model::function::{Function, InvalidFunction};
 use crate::model::motion::Motion;
 use crate::model::registry::{Model, ModelKind, model, models};
-use crate::model::space::{InvalidSpace, Kind, Space};
+use crate::model::space::{ComponentKind, InvalidSpace, Space};
 use crate::model::{Sensor, nearest::nearest};
 use crate::number::{Rational, Real};
 use nalgebra::{DMatrix, DVector, Dyn};
@@ -104,7 +104,7 @@ impl ProblemFile {
     ///
     /// [`Invalid`] with the first one.
     pub(super) fn check_angles(&self) -> Result<(), Invalid> {
-        let is_angle = |component: &ComponentFile| component.kind == Kind::Angle;
+        let is_angle = |component: &ComponentFile| component.kind == ComponentKind::Angle;
         match self.state.iter().position(is_angle) {
             None => Ok(()),
             Some(index) => {

@@ -3,7 +3,7 @@
 //! After this file the reader knows the keys. What becomes of them is in `bound`, and what is refused in `well_formed`.
 
 use super::problem::{ModeFile, Rows, if_there_at_all};
-use crate::model::space::{Component, Kind};
+use crate::model::space::{Component, ComponentKind};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Error, MapAccess, SeqAccess, Visitor};
@@ -20,7 +20,7 @@ pub struct ComponentFile {
     /// Its unit.
     pub unit: Option<String>,
     /// Whether it is an angle.
-    pub kind: Kind,
+    pub kind: ComponentKind,
 }
 
 impl From<&str> for ComponentFile {
@@ -31,7 +31,7 @@ impl From<&str> for ComponentFile {
 
 impl From<String> for ComponentFile {
     fn from(name: String) -> Self {
-        let (unit, kind) = (None, Kind::Number);
+        let (unit, kind) = (None, ComponentKind::Number);
         Self { name, unit, kind }
     }
 }
@@ -51,8 +51,8 @@ impl Serialize for ComponentFile {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match (&self.unit, self.kind) {
             (None, _) => serializer.serialize_str(&self.name),
-            (Some(unit), Kind::Number) => [&self.name, unit].serialize(serializer),
-            (Some(unit), Kind::Angle) => [self.name.as_str(), unit, "angle"].serialize(serializer),
+            (Some(unit), ComponentKind::Number) => [&self.name, unit].serialize(serializer),
+            (Some(unit), ComponentKind::Angle) => [self.name.as_str(), unit, "angle"].serialize(serializer),
         }
     }
 }
@@ -71,8 +71,8 @@ impl<'de> Deserialize<'de> for ComponentFile {
             fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<ComponentFile, A::Error> {
                 let words = Vec::<String>::deserialize(SeqAccessDeserializer::new(list))?;
                 let (name, unit, kind) = match &words[..] {
-                    [name, unit] => (name, unit, Kind::Number),
-                    [name, unit, kind] if kind == "angle" => (name, unit, Kind::Angle),
+                    [name, unit] => (name, unit, ComponentKind::Number),
+                    [name, unit, kind] if kind == "angle" => (name, unit, ComponentKind::Angle),
                     _ => return Err(A::Error::custom("is not a name, a unit and perhaps \"angle\"")),
                 };
                 let (name, unit) = (name.clone(), Some(unit.clone()));

@@ -8,7 +8,7 @@ use super::models::{ComponentFile, ModeKeys, ModeModels, Parameters};
 use super::trace::Dimensions;
 use super::unreadable;
 use crate::imm::{Needs, Quantity};
-use crate::model::space::Kind;
+use crate::model::space::ComponentKind;
 use schemars::JsonSchema;
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Deserializer, Serialize};
@@ -439,7 +439,9 @@ impl ProblemFile {
     /// Whether an entry of the measurement is an angle.
     pub fn is_bearing(&self, row: usize) -> bool {
         match &self.measurement {
-            MeasurementFile::Formulas { z, .. } => z.get(row).is_some_and(|component| component.kind == Kind::Angle),
+            MeasurementFile::Formulas { z, .. } => z
+                .get(row)
+                .is_some_and(|component| component.kind == ComponentKind::Angle),
             MeasurementFile::Model { .. } => self.measured_space().is_ok_and(|space| space.is_angle(row)),
             _ => self.is_component(row, "bearing"),
         }

@@ -16,7 +16,7 @@ use serde::Serialize;
 /// A quantity whose error is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Quantity {
+pub enum ErrorQuantity {
     /// The position along x, m.
     X,
     /// The velocity along x, m/s.
@@ -31,7 +31,7 @@ pub enum Quantity {
     Velocity,
 }
 
-impl Quantity {
+impl ErrorQuantity {
     /// All quantities.
     pub const ALL: [Self; 6] = [
         Self::X,
@@ -95,7 +95,7 @@ impl Comparison<'_> {
         &self,
         runs: &[&Vec<Run>],
         contestant: usize,
-        quantity: Quantity,
+        quantity: ErrorQuantity,
         chosen: &dyn Fn(usize) -> bool,
     ) -> Vec<f64> {
         let steps: Vec<usize> = (0..self.steps()).filter(|k| chosen(*k)).collect();
@@ -124,23 +124,29 @@ impl Comparison<'_> {
     }
 
     /// The overall error of a contestant.
-    pub fn error(&self, contestant: usize, quantity: Quantity) -> Estimate {
+    pub fn error(&self, contestant: usize, quantity: ErrorQuantity) -> Estimate {
         self.error_over(contestant, quantity, &|_| true)
     }
 
     /// The error of a contestant over some of the steps, counted from 0.
-    pub fn error_over(&self, contestant: usize, quantity: Quantity, chosen: &dyn Fn(usize) -> bool) -> Estimate {
+    pub fn error_over(&self, contestant: usize, quantity: ErrorQuantity, chosen: &dyn Fn(usize) -> bool) -> Estimate {
         let runs = self.completed(&[contestant]);
         root_mean_square(&self.mean_squares(&runs, contestant, quantity, chosen))
     }
 
     /// The error of contestant `a` minus that of contestant `b`, paired run by run.
-    pub fn difference(&self, a: usize, b: usize, quantity: Quantity) -> Estimate {
+    pub fn difference(&self, a: usize, b: usize, quantity: ErrorQuantity) -> Estimate {
         self.difference_over(a, b, quantity, &|_| true)
     }
 
     /// As [`Comparison::difference`], over some of the steps, counted from 0.
-    pub fn difference_over(&self, a: usize, b: usize, quantity: Quantity, chosen: &dyn Fn(usize) -> bool) -> Estimate {
+    pub fn difference_over(
+        &self,
+        a: usize,
+        b: usize,
+        quantity: ErrorQuantity,
+        chosen: &dyn Fn(usize) -> bool,
+    ) -> Estimate {
         let runs = self.completed(&[a, b]);
         paired_difference(
             &self.mean_squares(&runs, a, quantity, chosen),
@@ -168,7 +174,7 @@ impl Comparison<'_> {
     }
 
     /// RMSE(k) of a contestant at every step, each with its standard error over the runs.
-    pub fn rmse(&self, contestant: usize, quantity: Quantity) -> Vec<Estimate> {
+    pub fn rmse(&self, contestant: usize, quantity: ErrorQuantity) -> Vec<Estimate> {
         let runs = self.completed(&[contestant]);
         let at_step = |k: usize| {
             let squared = |run: &&Vec<Run>| quantity.squared(&run[contestant].errors[k]);
@@ -214,7 +220,7 @@ impl Comparison<'_> {
     /// The greatest position error of a contestant at any step of any run, m.
     pub fn greatest_position_error(&self, contestant: usize) -> f64 {
         let runs = self.runs.iter().flat_map(|run| &run[contestant].errors);
-        runs.map(|error| Quantity::Position.squared(error).sqrt())
+        runs.map(|error| ErrorQuantity::Position.squared(error).sqrt())
             .fold(0.0, f64::max)
     }
 

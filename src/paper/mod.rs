@@ -43,7 +43,7 @@ use monte_carlo::Progress;
 use result::{Figure, Reproduction};
 use simulation::Simulation;
 use specification::{Choices, InvalidChoice, Specification};
-use verdict::Judgement;
+use verdict::JudgedClaim;
 
 /// A paper that can be reproduced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -151,13 +151,13 @@ impl Paper {
     /// Example: zhu2016 is linear, so two of its filters are one: the same errors but for rounding, in two runs as in a hundred.
     ///
     /// ```
-    /// use immaculate::paper::comparison::Quantity;
+    /// use immaculate::paper::comparison::ErrorQuantity;
     /// use immaculate::paper::specification::Choices;
     /// use immaculate::paper::{Effort, Paper};
     ///
     /// let effort = Effort { runs: Some(2), seed: 1 };
     /// let result = Paper::Zhu2016.reproduce(&Choices::default(), effort, &|| {}).unwrap();
-    /// let error = |filter| result.error(filter, Quantity::X).unwrap().value;
+    /// let error = |filter| result.error(filter, ErrorQuantity::X).unwrap().value;
     /// assert!((error("IMM5CKF") - error("IMMCKF")).abs() < 1e-9); // 10⁻¹⁰ m is the greatest difference of any estimate
     /// ```
     ///
@@ -212,7 +212,7 @@ impl Paper {
     /// # Errors
     ///
     /// [`InvalidChoice`] never, unless the specification and the code disagree about the scenario's parameters.
-    pub fn judge(self, effort: Effort, progress: Progress) -> Result<Vec<Judgement>, InvalidChoice> {
+    pub fn judge(self, effort: Effort, progress: Progress) -> Result<Vec<JudgedClaim>, InvalidChoice> {
         match self {
             Self::Derbez2000 => derbez2000::claims::judge(effort, progress),
             Self::Sustika2015 => sustika2015::claims::judge(effort, progress),

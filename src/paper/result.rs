@@ -5,7 +5,7 @@
 //!
 //! A run in which a step could not be computed is counted and named, and is left out of the error figures of that filter.
 
-use super::comparison::{Comparison, Quantity};
+use super::comparison::{Comparison, ErrorQuantity};
 use super::simulation::Run;
 use super::simulation::{Path, Simulation};
 use super::specification::Choices;
@@ -17,7 +17,7 @@ use serde::Serialize;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Figure {
     /// The overall error of a quantity.
-    Error(Quantity),
+    Error(ErrorQuantity),
     /// The percentage fit error of the position.
     FitError,
 }
@@ -114,7 +114,7 @@ pub struct FailedRun {
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct ErrorFigure {
     /// Of what.
-    pub quantity: Quantity,
+    pub quantity: ErrorQuantity,
     /// The root-mean-square error with its standard error.
     #[serde(flatten)]
     pub estimate: Estimate,
@@ -124,7 +124,7 @@ pub struct ErrorFigure {
 #[derive(Debug, Clone, Serialize)]
 pub struct ErrorHistory {
     /// Of what.
-    pub quantity: Quantity,
+    pub quantity: ErrorQuantity,
     /// RMSE(k), one a step.
     pub values: Vec<f64>,
     /// Their standard errors over the runs.
@@ -166,7 +166,7 @@ pub struct Difference {
     /// The filter whose error is subtracted.
     pub minus: String,
     /// Of what.
-    pub quantity: Quantity,
+    pub quantity: ErrorQuantity,
     /// The difference with its standard error.
     #[serde(flatten)]
     pub estimate: Estimate,
@@ -198,7 +198,7 @@ impl Reproduction {
         let (mut differences, mut fit_differences) = (Vec::new(), Vec::new());
         for a in 0..filters.len() {
             for b in a + 1..filters.len() {
-                for quantity in [Quantity::Position, Quantity::Velocity] {
+                for quantity in [ErrorQuantity::Position, ErrorQuantity::Velocity] {
                     differences.push(Difference {
                         filter: filters[a].name.clone(),
                         minus: filters[b].name.clone(),
@@ -234,7 +234,7 @@ impl Reproduction {
     }
 
     /// The overall error of a filter in a quantity.
-    pub fn error(&self, filter: &str, quantity: Quantity) -> Option<Estimate> {
+    pub fn error(&self, filter: &str, quantity: ErrorQuantity) -> Option<Estimate> {
         let filter = self.filters.iter().find(|performance| performance.name == filter)?;
         let figure = filter.errors.iter().find(|figure| figure.quantity == quantity)?;
         Some(figure.estimate)
@@ -311,9 +311,9 @@ fn performance(comparison: &Comparison, c: usize) -> Performance {
         effective_points: filter.points.map(|(_, effective)| effective),
         completed_runs: comparison.runs.len() - failures.len(),
         failures,
-        errors: Quantity::ALL.into_iter().map(error).collect(),
+        errors: ErrorQuantity::ALL.into_iter().map(error).collect(),
         fit_error: comparison.fit_error(c),
-        rmse: Quantity::ALL.into_iter().map(history).collect(),
+        rmse: ErrorQuantity::ALL.into_iter().map(history).collect(),
         mode_probabilities,
         mode_probability_standard_errors,
         nees: consistency(comparison, c, nees, state_components, |run| &run.nees),

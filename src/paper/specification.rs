@@ -19,7 +19,7 @@ pub struct Specification {
     /// What the paper prints without a number, or needs and does not print.
     pub unnumbered: Vec<Equation>,
     /// The published tables.
-    pub tables: Vec<Table>,
+    pub tables: Vec<PublishedTable>,
     /// The open parameters of the scenario.
     pub parameters: Vec<Parameter>,
     /// What the paper claims.
@@ -112,7 +112,7 @@ pub struct Erratum {
 /// A published table.
 #[derive(Debug, Clone, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub struct Table {
+pub struct PublishedTable {
     /// Its number.
     pub number: u32,
     /// Its caption.
@@ -448,7 +448,7 @@ struct EquationsFile {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct TablesFile {
-    table: Vec<Table>,
+    table: Vec<PublishedTable>,
 }
 
 #[derive(Deserialize)]

@@ -39,7 +39,7 @@ impl Verdict {
 
 /// A claim, its verdict and the evidence.
 #[derive(Debug, Clone, Serialize)]
-pub struct Judgement {
+pub struct JudgedClaim {
     /// The claim's name.
     pub id: String,
     /// The paper's words.
@@ -88,13 +88,13 @@ impl Specification {
     /// # Panics
     ///
     /// When the specification has no such claim: judges and claims are both part of the program, and a test holds them together.
-    pub fn judgement(&self, id: &str, verdict: Verdict, evidence: String) -> Judgement {
+    pub fn judgement(&self, id: &str, verdict: Verdict, evidence: String) -> JudgedClaim {
         let claim: &Claim = self
             .claims
             .iter()
             .find(|claim| claim.id == id)
             .expect("every judge has a claim");
-        Judgement {
+        JudgedClaim {
             id: claim.id.clone(),
             quote: claim.quote.clone(),
             place: claim.place.clone(),

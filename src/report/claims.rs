@@ -4,11 +4,11 @@
 
 use super::{citation, wrapped};
 use crate::paper::specification::Specification;
-use crate::paper::verdict::{Judgement, Verdict};
+use crate::paper::verdict::{JudgedClaim, Verdict};
 use std::fmt::Write;
 
 /// One paragraph a claim: verdict, name, the paper's words, the question and the evidence.
-pub fn text(judgements: &[Judgement]) -> String {
+pub fn text(judgements: &[JudgedClaim]) -> String {
     let mut text = String::new();
     for judgement in judgements {
         let _ = writeln!(
@@ -27,7 +27,7 @@ pub fn text(judgements: &[Judgement]) -> String {
 }
 
 /// How often each verdict was given, in one line.
-pub fn summary(judgements: &[Judgement]) -> String {
+pub fn summary(judgements: &[JudgedClaim]) -> String {
     let verdicts = [
         Verdict::Proven,
         Verdict::Confirmed,

@@ -5,7 +5,7 @@
 
 use super::{standard_errors, table, wrapped};
 use crate::paper::sustika2015::DIVERGENT_FIT_ERROR;
-use crate::paper::sustika2015::divergence::{Row, Tally};
+use crate::paper::sustika2015::divergence::{DivergenceRow, Divergences};
 use crate::statistics::Estimate;
 
 /// What each column of the table is.
@@ -19,9 +19,9 @@ pub(super) const HEADER: [&str; 6] = [
 ];
 
 /// The cells of the table, a row a simulation.
-pub(super) fn cells(rows: &[Row]) -> Vec<Vec<String>> {
+pub(super) fn cells(rows: &[DivergenceRow]) -> Vec<Vec<String>> {
     let counts = |of: [usize; 3]| of.map(|count| count.to_string()).join(" / ");
-    let of_row = |row: &Row| {
+    let of_row = |row: &DivergenceRow| {
         vec![
             row.scenario.to_owned(),
             row.window.to_owned(),
@@ -44,12 +44,12 @@ pub(super) fn legend(runs: usize) -> String {
 }
 
 /// What the runs of all simulations together say.
-pub(super) fn cause(rows: &[Row], runs: usize) -> String {
-    Tally::of(rows.iter().map(|row| &row.point), runs).cause()
+pub(super) fn cause(rows: &[DivergenceRow], runs: usize) -> String {
+    Divergences::of(rows.iter().map(|row| &row.point), runs).cause()
 }
 
 /// The rows as text.
-pub fn text(rows: &[Row], runs: usize) -> String {
+pub fn text(rows: &[DivergenceRow], runs: usize) -> String {
     let mut table = table(&HEADER);
     for row in cells(rows) {
         table.add_row(row);

@@ -8,7 +8,7 @@ use super::chart::{
     Area, Axis, Caption, Drawn, Key, Line, Look, NotDrawn, draw_lines, figure, looks, panel, stretches,
 };
 use crate::paper::Paper;
-use crate::paper::comparison::Quantity;
+use crate::paper::comparison::ErrorQuantity;
 use crate::paper::result::{Performance, Reproduction};
 use crate::statistics::estimate::figure as digits;
 use std::fmt::Write;
@@ -39,7 +39,8 @@ struct Panel {
 ///
 /// [`NotDrawn`] when the figure cannot be drawn.
 pub fn errors(reproduction: &Reproduction) -> Result<String, NotDrawn> {
-    let panels = [Quantity::Position, Quantity::Velocity].map(|quantity| panel_of_errors(reproduction, quantity));
+    let panels =
+        [ErrorQuantity::Position, ErrorQuantity::Velocity].map(|quantity| panel_of_errors(reproduction, quantity));
     let mut says = format!(
         "Root mean square errors over time of {} filters. Overall:",
         reproduction.filters.len()
@@ -50,7 +51,7 @@ pub fn errors(reproduction: &Reproduction) -> Result<String, NotDrawn> {
                 .error(&filter.name, quantity)
                 .map_or(f64::NAN, |error| error.value)
         };
-        let (position, velocity) = (error(Quantity::Position), error(Quantity::Velocity));
+        let (position, velocity) = (error(ErrorQuantity::Position), error(ErrorQuantity::Velocity));
         let _ = write!(
             says,
             " {} {} m and {} m/s;",
@@ -73,7 +74,7 @@ pub fn errors(reproduction: &Reproduction) -> Result<String, NotDrawn> {
     draw(reproduction, &caption, &panels)
 }
 
-fn panel_of_errors(reproduction: &Reproduction, quantity: Quantity) -> Panel {
+fn panel_of_errors(reproduction: &Reproduction, quantity: ErrorQuantity) -> Panel {
     let history = |filter: &Performance| {
         let history = filter.rmse.iter().find(|history| history.quantity == quantity)?;
         Some((history.values.clone(), history.standard_errors.clone()))
@@ -87,7 +88,7 @@ fn panel_of_errors(reproduction: &Reproduction, quantity: Quantity) -> Panel {
     Panel {
         title: String::new(),
         label: match quantity {
-            Quantity::Position => "RMSE of position (m)",
+            ErrorQuantity::Position => "RMSE of position (m)",
             _ => "RMSE of velocity (m/s)",
         },
         highest: if highest > 0.0 { highest } else { 1.0 },

@@ -12,7 +12,7 @@ use super::{standard_errors, table};
 use crate::number::Real;
 use crate::paper::result::Reproduction;
 use crate::paper::specification::Specification;
-use crate::paper::sustika2015::sweep::{FILTERS, Fit, Parameter, Point, Setting, Trajectory};
+use crate::paper::sustika2015::sweep::{FILTERS, Fit, SweepPoint, SweepSetting, SweptParameter, SweptTrajectory};
 use crate::paper::sustika2015::{DIVERGENT_FIT_ERROR, GOOD_FIT_ERROR};
 use crate::statistics::Estimate;
 use std::fmt::Write;
@@ -22,10 +22,10 @@ const PANEL_HEIGHT: u32 = 330;
 const LEAST: f64 = 1.0;
 
 /// The sweep as text: one table a trajectory and parameter, ten values of each, and what all of them say together.
-pub fn text(sweep: &[(Setting, Point)], runs: usize) -> String {
+pub fn text(sweep: &[(SweepSetting, SweepPoint)], runs: usize) -> String {
     let mut text = format!("Percentage fit errors in %, means over {runs} runs with their standard errors\n");
-    for trajectory in Trajectory::ALL {
-        for parameter in Parameter::ALL {
+    for trajectory in SweptTrajectory::ALL {
+        for parameter in SweptParameter::ALL {
             let points = points_of(sweep, trajectory, parameter);
             let _ = writeln!(text, "\n{}", title(trajectory, parameter));
             let _ = writeln!(text, "{}", values(&points));
@@ -59,26 +59,30 @@ pub fn execution_times(specification: &Specification, reproduction: &Reproductio
     ))
 }
 
-fn points_of(sweep: &[(Setting, Point)], trajectory: Trajectory, parameter: Parameter) -> Vec<(f64, Point)> {
-    let is_of = |setting: &Setting| setting.trajectory == trajectory && setting.parameter == parameter;
+fn points_of(
+    sweep: &[(SweepSetting, SweepPoint)],
+    trajectory: SweptTrajectory,
+    parameter: SweptParameter,
+) -> Vec<(f64, SweepPoint)> {
+    let is_of = |setting: &SweepSetting| setting.trajectory == trajectory && setting.parameter == parameter;
     let points = sweep.iter().filter(|(setting, _)| is_of(setting));
     points.map(|(setting, point)| (setting.value, *point)).collect()
 }
 
-fn title(trajectory: Trajectory, parameter: Parameter) -> String {
+fn title(trajectory: SweptTrajectory, parameter: SweptParameter) -> String {
     let (number, trajectory) = match trajectory {
-        Trajectory::Straight => (2, "without manoeuvres"),
-        Trajectory::Manoeuvring => (4, "with manoeuvres"),
+        SweptTrajectory::Straight => (2, "without manoeuvres"),
+        SweptTrajectory::Manoeuvring => (4, "with manoeuvres"),
     };
     let panel = match parameter {
-        Parameter::NoiseDensity => "a: the filters' q varied, σ_θ = 1° as in the truth",
-        Parameter::BearingDegrees => "b: the filters' σ_θ varied, q = 0.1 as in the truth",
+        SweptParameter::NoiseDensity => "a: the filters' q varied, σ_θ = 1° as in the truth",
+        SweptParameter::BearingDegrees => "b: the filters' σ_θ varied, q = 0.1 as in the truth",
     };
     format!("Figure {number}{panel}; trajectory {trajectory}")
 }
 
 /// Ten values of a parameter, evenly spread.
-fn values(points: &[(f64, Point)]) -> comfy_table::Table {
+fn values(points: &[(f64, SweepPoint)]) -> comfy_table::Table {
     let mut table = table(&[
         "",
         FILTERS[0],
@@ -114,8 +118,8 @@ fn counts(fits: &[Fit; 3], of: fn(&Fit) -> usize) -> String {
 }
 
 /// What all settings of a trajectory say of each filter.
-fn summary(sweep: &[(Setting, Point)], trajectory: Trajectory, runs: usize) -> String {
-    let points: Vec<&Point> = sweep
+fn summary(sweep: &[(SweepSetting, SweepPoint)], trajectory: SweptTrajectory, runs: usize) -> String {
+    let points: Vec<&SweepPoint> = sweep
         .iter()
         .filter(|(setting, _)| setting.trajectory == trajectory)
         .map(|(_, point)| point)
@@ -148,12 +152,16 @@ fn summary(sweep: &[(Setting, Point)], trajectory: Trajectory, runs: usize) -> S
 /// # Errors
 ///
 /// [`NotDrawn`] when the figure cannot be drawn.
-pub fn draw(sweep: &[(Setting, Point)], trajectory: Trajectory, runs: usize) -> Result<String, NotDrawn> {
+pub fn draw(
+    sweep: &[(SweepSetting, SweepPoint)],
+    trajectory: SweptTrajectory,
+    runs: usize,
+) -> Result<String, NotDrawn> {
     let caption = Caption {
         name: format!("sustika2015-sweep-{}", trajectory.name()),
         title: match trajectory {
-            Trajectory::Straight => "sustika2015, figure 2: fit errors without manoeuvres".to_owned(),
-            Trajectory::Manoeuvring => "sustika2015, figure 4: fit errors with manoeuvres".to_owned(),
+            SweptTrajectory::Straight => "sustika2015, figure 2: fit errors without manoeuvres".to_owned(),
+            SweptTrajectory::Manoeuvring => "sustika2015, figure 4: fit errors with manoeuvres".to_owned(),
         },
         note: format!(
             "Means over {runs} runs; bands: ± 2 standard errors. Line: {GOOD_FIT_ERROR} %, below which it is \"good enough for \
@@ -169,7 +177,7 @@ pub fn draw(sweep: &[(Setting, Point)], trajectory: Trajectory, runs: usize) -> 
         let areas = area.split_evenly((2, 1));
         areas
             .iter()
-            .zip(Parameter::ALL)
+            .zip(SweptParameter::ALL)
             .try_for_each(|(area, parameter)| draw_panel(area, &points_of(sweep, trajectory, parameter), parameter))
     })
 }
@@ -179,7 +187,7 @@ fn power(exponent: f64) -> String {
     plain(Real::exp(&(exponent * Real::ln(&10.0))).round())
 }
 
-fn draw_panel(area: &Area, points: &[(f64, Point)], parameter: Parameter) -> Drawn {
+fn draw_panel(area: &Area, points: &[(f64, SweepPoint)], parameter: SweptParameter) -> Drawn {
     let edges = points.iter().flat_map(|(_, point)| point.fits.iter().flat_map(band));
     let highest = edges.filter(|edge| edge.is_finite()).fold(GOOD_FIT_ERROR, f64::max);
     let last = points.last().map_or(1.0, |(value, _)| *value);
@@ -192,8 +200,8 @@ fn draw_panel(area: &Area, points: &[(f64, Point)], parameter: Parameter) -> Dra
         }
     };
     let name = match parameter {
-        Parameter::NoiseDensity => "q of the filters (m²/s³, m²/s⁵); truth: 0.1",
-        Parameter::BearingDegrees => "σ_θ of the filters (°); truth: 1",
+        SweptParameter::NoiseDensity => "q of the filters (m²/s³, m²/s⁵); truth: 0.1",
+        SweptParameter::BearingDegrees => "σ_θ of the filters (°); truth: 1",
     };
     let x = Axis::new(0.0..last, name, false);
     let mut y = Axis::new(0.0..scaled(1.2 * highest), "fit error (%)", true);

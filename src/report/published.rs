@@ -5,7 +5,7 @@
 
 use super::chart::{Area, Axis, Caption, Drawn, Key, NotDrawn, draw_path, figure, label, marker, panel, range_of};
 use super::palette::{FILTERS, MEASURED};
-use super::reproduction::Comparison;
+use super::reproduction::SideBySide;
 use crate::paper::Paper;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -28,11 +28,11 @@ const DIAMOND: usize = 3;
 /// # Errors
 ///
 /// [`NotDrawn`] when the figure cannot be drawn.
-pub fn published_and_computed(paper: Paper, comparisons: &[Comparison]) -> Option<Result<String, NotDrawn>> {
+pub fn published_and_computed(paper: Paper, comparisons: &[SideBySide]) -> Option<Result<String, NotDrawn>> {
     if comparisons.is_empty() {
         return None;
     }
-    let rows: Vec<&[Comparison]> = comparisons
+    let rows: Vec<&[SideBySide]> = comparisons
         .chunk_by(|a, b| (a.table, &a.row) == (b.table, &b.row))
         .collect();
     let far = comparisons
@@ -69,8 +69,8 @@ pub fn published_and_computed(paper: Paper, comparisons: &[Comparison]) -> Optio
     }))
 }
 
-fn in_words(comparisons: &[Comparison]) -> String {
-    let words = |of: &Comparison| {
+fn in_words(comparisons: &[SideBySide]) -> String {
+    let words = |of: &SideBySide| {
         let computed = crate::statistics::estimate::figure(of.computed);
         format!(
             " {}, {}: published {}, computed {computed} {}.",
@@ -81,7 +81,7 @@ fn in_words(comparisons: &[Comparison]) -> String {
 }
 
 /// The ends of a bar.
-fn bar(of: &Comparison) -> [f64; 2] {
+fn bar(of: &SideBySide) -> [f64; 2] {
     [
         of.computed - 2.0 * of.standard_error,
         of.computed + 2.0 * of.standard_error,
@@ -89,7 +89,7 @@ fn bar(of: &Comparison) -> [f64; 2] {
 }
 
 /// One row of a table; its filters from top to bottom.
-fn draw_row(area: &Area, row: &[Comparison]) -> Drawn {
+fn draw_row(area: &Area, row: &[SideBySide]) -> Drawn {
     let values = row.iter().flat_map(|of| bar(of).into_iter().chain([of.published]));
     let mut range = range_of(values);
     // From zero where that leaves room to see differences.

@@ -5,9 +5,9 @@
 
 use super::{citation, fit_error, indent_of, standard_errors, table, wrapped};
 use crate::paper::Paper;
-use crate::paper::comparison::Quantity;
+use crate::paper::comparison::ErrorQuantity;
 use crate::paper::result::{Consistency, ErrorFigure, Figure, FirstRun, Performance, Reproduction};
-use crate::paper::specification::{Choices, Specification, Table};
+use crate::paper::specification::{Choices, PublishedTable, Specification};
 use crate::statistics::Estimate;
 use crate::statistics::estimate::figure;
 use serde::Serialize;
@@ -15,7 +15,7 @@ use std::fmt::Write;
 
 /// A published figure beside the computed one.
 #[derive(Debug, Clone, Serialize)]
-pub struct Comparison {
+pub struct SideBySide {
     /// The published table's number.
     pub table: u32,
     /// The row's name in the published table.
@@ -35,7 +35,7 @@ pub struct Comparison {
 }
 
 /// Every figure of the paper's tables that the runs reproduce.
-pub fn published_and_computed(paper: Paper, reproduction: &Reproduction) -> Vec<Comparison> {
+pub fn published_and_computed(paper: Paper, reproduction: &Reproduction) -> Vec<SideBySide> {
     let tables = &paper.specification().tables;
     tables
         .iter()
@@ -44,7 +44,7 @@ pub fn published_and_computed(paper: Paper, reproduction: &Reproduction) -> Vec<
 }
 
 /// Every figure of one table that the runs reproduce.
-pub fn compare(paper: Paper, reproduction: &Reproduction, table: &Table) -> Vec<Comparison> {
+pub fn compare(paper: Paper, reproduction: &Reproduction, table: &PublishedTable) -> Vec<SideBySide> {
     let mut comparisons = Vec::new();
     for row in &table.rows {
         let Some(of_row) = paper.figure_of_row(&reproduction.choices, table.number, &row.name) else {
@@ -58,7 +58,7 @@ pub fn compare(paper: Paper, reproduction: &Reproduction, table: &Table) -> Vec<
             let Some(estimate) = reproduction.figure(&filter.name, of_row) else {
                 continue;
             };
-            comparisons.push(Comparison {
+            comparisons.push(SideBySide {
                 table: table.number,
                 row: row.name.clone(),
                 unit: row.unit.clone(),
@@ -185,7 +185,7 @@ pub(super) const HEADER: [&str; 6] = [
     "difference / s.e.",
 ];
 
-fn errors(comparisons: &[Comparison]) -> comfy_table::Table {
+fn errors(comparisons: &[SideBySide]) -> comfy_table::Table {
     let mut table = table(&HEADER);
     if let Some(column) = table.column_mut(1) {
         column.set_cell_alignment(comfy_table::CellAlignment::Left);
@@ -217,7 +217,7 @@ const ROUNDING: f64 = 1e-11;
 /// The errors of every filter, where there is nothing to stand beside them.
 fn unpublished(reproduction: &Reproduction) -> comfy_table::Table {
     let mut header = vec![""];
-    header.extend(Quantity::ALL.iter().map(|quantity| quantity.label()));
+    header.extend(ErrorQuantity::ALL.iter().map(|quantity| quantity.label()));
     let mut table = table(&header);
     for filter in &reproduction.filters {
         let mut row = vec![filter.name.clone()];
@@ -230,7 +230,7 @@ fn unpublished(reproduction: &Reproduction) -> comfy_table::Table {
 fn differences(reproduction: &Reproduction) -> comfy_table::Table {
     let mut table = table(&["", "position (m)", "/ s.e.", "velocity (m/s)", "/ s.e."]);
     let of = |quantity| reproduction.differences.iter().filter(move |d| d.quantity == quantity);
-    for (position, velocity) in of(Quantity::Position).zip(of(Quantity::Velocity)) {
+    for (position, velocity) in of(ErrorQuantity::Position).zip(of(ErrorQuantity::Velocity)) {
         let mut row = vec![format!("{} − {}", position.filter, position.minus)];
         for difference in [position, velocity] {
             row.extend(with_distance(difference.estimate));
@@ -351,7 +351,7 @@ pub(super) fn under_each_choice(paper: Paper, reproductions: &[Reproduction]) ->
     let (of, measure) = if reproductions.iter().any(has_fit_error) {
         (Figure::FitError, "percentage fit error (%)")
     } else {
-        (Figure::Error(Quantity::Position), "position error (m)")
+        (Figure::Error(ErrorQuantity::Position), "position error (m)")
     };
     let of_choice = |reproduction: &Reproduction| {
         let cells = filters.iter().map(|name| error_of(reproduction, name, of));

@@ -34,14 +34,14 @@ pub struct Description {
     /// The degree, by the exact moments of all monomials; none when not even the weights' sum is right, or when it was not tried.
     pub proven_degree: Option<usize>,
     /// The first moment that is wrong.
-    pub first_wrong_moment: Option<WrongMoment>,
+    pub first_wrong_moment: Option<ListedMoment>,
     /// The points.
-    pub list: Vec<Point>,
+    pub list: Vec<RulePoint>,
 }
 
 /// A moment that a rule gets wrong.
 #[derive(Debug, Clone, Serialize)]
-pub struct WrongMoment {
+pub struct ListedMoment {
     /// Which, `E x1^6`.
     pub moment: String,
     /// The rule's value, exact.
@@ -52,7 +52,7 @@ pub struct WrongMoment {
 
 /// A point and its weights.
 #[derive(Debug, Clone, Serialize)]
-pub struct Point {
+pub struct RulePoint {
     /// The weight, exact.
     pub weight: String,
     /// The weight, the nearest double.
@@ -91,7 +91,7 @@ fn describe_exact(rule: &ExactRule, shown: &str, exactness: Option<Exactness>) -
         .points
         .iter()
         .zip(rule.weights.iter().zip(&rule.covariance_weights))
-        .map(|(point, (weight, covariance_weight))| Point {
+        .map(|(point, (weight, covariance_weight))| RulePoint {
             weight: weight.to_string(),
             weight_decimal: weight.to_f64(),
             covariance_weight: (weight != covariance_weight).then(|| covariance_weight.to_string()),
@@ -109,7 +109,7 @@ fn describe_exact(rule: &ExactRule, shown: &str, exactness: Option<Exactness>) -
         sum_of_weights: rule.sum_of_weights().to_string(),
         sum_of_absolute_weights: rule.sum_of_absolute_weights().to_string(),
         proven_degree: exactness.and_then(|e| e.degree),
-        first_wrong_moment: failure.map(|failure| WrongMoment {
+        first_wrong_moment: failure.map(|failure| ListedMoment {
             moment: monomial_name(&failure.exponents),
             rule: failure.rule.to_string(),
             gaussian: failure.gaussian.to_string(),
@@ -146,7 +146,7 @@ fn describe_gauss_hermite(m: usize, shown: &str, n: usize) -> Result<Description
                 0 => "0".to_owned(),
                 _ => format!("{sign}√({})", node.square),
             };
-            Point {
+            RulePoint {
                 weight: node.weight.to_string(),
                 weight_decimal: node.weight.to_f64(),
                 covariance_weight: None,
@@ -165,7 +165,7 @@ fn describe_gauss_hermite(m: usize, shown: &str, n: usize) -> Result<Description
         sum_of_weights: gauss_hermite::moment(&nodes, 0).to_string(),
         sum_of_absolute_weights: gauss_hermite::moment(&nodes, 0).to_string(),
         proven_degree: failing.checked_sub(1),
-        first_wrong_moment: Some(WrongMoment {
+        first_wrong_moment: Some(ListedMoment {
             moment: format!("E x1^{failing}"),
             rule: gauss_hermite::moment(&nodes, failing).to_string(),
             gaussian: gaussian(failing).to_string(),

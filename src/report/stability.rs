@@ -11,7 +11,7 @@ use crate::steady::certificate_file::CertificateFile;
 use crate::steady::gains;
 use crate::steady::map::{Map, greatest_frozen_radius};
 use crate::steady::search::spectral_radius;
-use crate::steady::verdict::{BITS, Filters, LETTERS, Verdict, rows_text, word_text};
+use crate::steady::verdict::{BITS, Filters, LETTERS, StabilityVerdict, rows_text, word_text};
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -38,18 +38,18 @@ pub struct Steady {
 
 /// All that is said of two filters.
 #[derive(Debug, Clone)]
-pub struct Answer {
+pub struct StabilityAnswer {
     /// The steady states.
     pub steady: [Steady; 2],
     /// The greatest spectral radius of the frozen criterion under the paper's chain.
     pub frozen_radius: f64,
     /// The verdict on the mixed reading.
-    pub verdict: Verdict,
+    pub verdict: StabilityVerdict,
 }
 
-impl Answer {
+impl StabilityAnswer {
     /// The answer about two filters.
-    pub fn new(filters: &Filters, verdict: Verdict) -> Self {
+    pub fn new(filters: &Filters, verdict: StabilityVerdict) -> Self {
         Self {
             steady: steady(filters),
             frozen_radius: greatest_frozen_radius(filters),
@@ -94,7 +94,7 @@ fn steady(filters: &Filters) -> [Steady; 2] {
 }
 
 /// The answer for people.
-pub fn text(about: &str, answer: &Answer) -> String {
+pub fn text(about: &str, answer: &StabilityAnswer) -> String {
     let mut text = wrapped(about, "");
     let mut rows = table(&["steady filter", "Λ", "θ", "α", "β", "γ/2", "S/R", "spectral radius"]);
     for filter in &answer.steady {
@@ -118,7 +118,7 @@ pub fn text(about: &str, answer: &Answer) -> String {
         "  ",
     ));
     let certified = match answer.verdict {
-        Verdict::Undecided { .. } => "",
+        StabilityVerdict::Undecided { .. } => "",
         _ => "certified ",
     };
     let _ = writeln!(text, "\nMIXED     {certified}{}", verdict_word(&answer.verdict));
@@ -143,13 +143,13 @@ fn short(number: &str) -> String {
 }
 
 /// What the proof says, in words.
-fn proof(verdict: &Verdict) -> String {
+fn proof(verdict: &StabilityVerdict) -> String {
     match verdict {
-        Verdict::Stable(found) if found.forms.len() == 1 => "However the two filters' estimates are mixed, errors shrink: xᵀPx gets smaller \
+        StabilityVerdict::Stable(found) if found.forms.len() == 1 => "However the two filters' estimates are mixed, errors shrink: xᵀPx gets smaller \
              whichever filter acts, since P, P − A_vᵀPA_v and P − A_aᵀPA_a are positive definite, A = (I − KH)F in coordinates scaled by \
              diag(1, t, t²). Checked:"
             .to_owned(),
-        Verdict::Stable(found) => format!(
+        StabilityVerdict::Stable(found) => format!(
             "However the two filters' estimates are mixed, errors shrink: no single quadratic form was found, but {} that remember the last \
              {}, P(w) − AᵀP(w′)A being positive definite for every word w and letter, w′ being w without its first letter and with \
              the new one. Checked:",
@@ -159,7 +159,7 @@ fn proof(verdict: &Verdict) -> String {
                 letters => format!("{letters} letters"),
             },
         ),
-        Verdict::Unstable(found) => format!(
+        StabilityVerdict::Unstable(found) => format!(
             "Mode probabilities exist under which errors grow without bound, although each filter by itself is stable: the product {} \
              (letters in the order in which they act, {} letters) has a spectral radius of at least {} = {}, by the Schur-Cohn test of its \
              characteristic polynomial. Checked.",
@@ -168,7 +168,7 @@ fn proof(verdict: &Verdict) -> String {
             found.radius,
             figure(found.radius.to_f64()),
         ),
-        Verdict::Undecided { growth } => format!(
+        StabilityVerdict::Undecided { growth } => format!(
             "Neither a form nor a growing product was found; the greatest growth a step of those tried is {growth:.6}. --memory and --word \
              search farther."
         ),
@@ -191,8 +191,8 @@ fn word(word: &[usize]) -> String {
 }
 
 /// The forms, up to four of them.
-fn matrices(verdict: &Verdict) -> String {
-    let Verdict::Stable(Quadratics { forms, .. }) = verdict else {
+fn matrices(verdict: &StabilityVerdict) -> String {
+    let StabilityVerdict::Stable(Quadratics { forms, .. }) = verdict else {
         return String::new();
     };
     let mut text = String::new();
@@ -214,7 +214,7 @@ fn memory_text(node: usize, length: u32) -> String {
 }
 
 /// The answer for programs.
-pub fn json(about: &str, answer: &Answer, certificate: Option<&CertificateFile>) -> Value {
+pub fn json(about: &str, answer: &StabilityAnswer, certificate: Option<&CertificateFile>) -> Value {
     json!({
         "about": about,
         "steady": answer.steady,
@@ -225,11 +225,11 @@ pub fn json(about: &str, answer: &Answer, certificate: Option<&CertificateFile>)
 }
 
 /// The verdict in one word.
-pub fn verdict_word(verdict: &Verdict) -> &'static str {
+pub fn verdict_word(verdict: &StabilityVerdict) -> &'static str {
     match verdict {
-        Verdict::Stable(_) => "stable",
-        Verdict::Unstable(_) => "unstable",
-        Verdict::Undecided { .. } => "undecided",
+        StabilityVerdict::Stable(_) => "stable",
+        StabilityVerdict::Unstable(_) => "unstable",
+        StabilityVerdict::Undecided { .. } => "undecided",
     }
 }
 
@@ -267,14 +267,14 @@ pub fn map_text(map: &Map) -> String {
     text
 }
 
-fn symbol(verdict: &Verdict) -> char {
+fn symbol(verdict: &StabilityVerdict) -> char {
     match verdict {
-        Verdict::Stable(found) if found.forms.len() == 1 => '·',
-        Verdict::Stable(_) => '+',
-        Verdict::Unstable(Product { word, .. }) => {
+        StabilityVerdict::Stable(found) if found.forms.len() == 1 => '·',
+        StabilityVerdict::Stable(_) => '+',
+        StabilityVerdict::Unstable(Product { word, .. }) => {
             char::from_digit(word.len().try_into().unwrap_or(10), 10).unwrap_or('x')
         }
-        Verdict::Undecided { .. } => '?',
+        StabilityVerdict::Undecided { .. } => '?',
     }
 }
 
@@ -285,8 +285,8 @@ pub fn map_json(map: &Map) -> Value {
             "damping_roots": point.roots.each_ref().map(ToString::to_string),
             "tracking_indices": point.indices.each_ref().map(Rational::to_f64),
             "verdict": verdict_word(&point.verdict),
-            "forms": match &point.verdict { Verdict::Stable(found) => Some(found.forms.len()), _ => None },
-            "word": match &point.verdict { Verdict::Unstable(found) => Some(word_text(&found.word)), _ => None },
+            "forms": match &point.verdict { StabilityVerdict::Stable(found) => Some(found.forms.len()), _ => None },
+            "word": match &point.verdict { StabilityVerdict::Unstable(found) => Some(word_text(&found.word)), _ => None },
             "frozen_radius": point.frozen_radius,
         })
     });
@@ -301,9 +301,9 @@ pub fn map_csv(map: &Map) -> String {
     );
     for point in map.points.iter().flatten() {
         let (forms, word) = match &point.verdict {
-            Verdict::Stable(found) => (found.forms.len().to_string(), String::new()),
-            Verdict::Unstable(found) => (String::new(), word_text(&found.word)),
-            Verdict::Undecided { .. } => Default::default(),
+            StabilityVerdict::Stable(found) => (found.forms.len().to_string(), String::new()),
+            StabilityVerdict::Unstable(found) => (String::new(), word_text(&found.word)),
+            StabilityVerdict::Undecided { .. } => Default::default(),
         };
         let [v, a] = point.roots.each_ref().map(Rational::to_f64);
         let [index_v, index_a] = point.indices.each_ref().map(Rational::to_f64);

@@ -5,8 +5,8 @@
 use super::chart::{Axis, Caption, Key, NotDrawn, draw_cells, draw_path, edges, figure, panel};
 use super::palette::{FILTERS, INK, PAPER};
 use crate::number::{Rational, Real};
-use crate::steady::map::{Map, Point};
-use crate::steady::verdict::Verdict;
+use crate::steady::map::{Map, MapPoint};
+use crate::steady::verdict::StabilityVerdict;
 use plotters::prelude::*;
 use std::fmt::Write;
 
@@ -22,19 +22,19 @@ const LEGEND: [(&str, RGBColor, f64); 6] = [
 const HEIGHT: u32 = 640;
 
 /// The place in the legend.
-fn kind(verdict: &Verdict) -> usize {
+fn kind(verdict: &StabilityVerdict) -> usize {
     match verdict {
-        Verdict::Stable(found) if found.forms.len() == 1 => 0,
-        Verdict::Stable(_) => 1,
-        Verdict::Unstable(found) if found.word.len() <= 2 => 2,
-        Verdict::Unstable(found) if found.word.len() <= 5 => 3,
-        Verdict::Unstable(_) => 4,
-        Verdict::Undecided { .. } => 5,
+        StabilityVerdict::Stable(found) if found.forms.len() == 1 => 0,
+        StabilityVerdict::Stable(_) => 1,
+        StabilityVerdict::Unstable(found) if found.word.len() <= 2 => 2,
+        StabilityVerdict::Unstable(found) if found.word.len() <= 5 => 3,
+        StabilityVerdict::Unstable(_) => 4,
+        StabilityVerdict::Undecided { .. } => 5,
     }
 }
 
 /// log₁₀ of the tracking index of a point along an axis.
-fn decade(point: &Point, axis: usize) -> f64 {
+fn decade(point: &MapPoint, axis: usize) -> f64 {
     Real::ln(&Rational::to_f64(&point.indices[axis])) / Real::ln(&10.0)
 }
 

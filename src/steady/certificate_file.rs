@@ -5,7 +5,7 @@
 //! nothing. Every number is a fraction in quotes, "−1.5" and "-3/2" alike.
 
 use super::certificate::{Edge, NotProven, Product, Quadratics};
-use super::verdict::{Filters, LETTERS, Verdict, word_text};
+use super::verdict::{Filters, LETTERS, StabilityVerdict, word_text};
 use crate::file::{digest, shortened};
 use crate::number::Rational;
 use nalgebra::SMatrix;
@@ -234,20 +234,20 @@ impl FiltersFile {
 
 impl CertificateFile {
     /// A certificate from a verdict; none if it is undecided.
-    pub fn new(about: String, filters: FiltersFile, verdict: &Verdict) -> Option<Self> {
+    pub fn new(about: String, filters: FiltersFile, verdict: &StabilityVerdict) -> Option<Self> {
         let proof = match verdict {
-            Verdict::Stable(found) => {
+            StabilityVerdict::Stable(found) => {
                 let edge = |edge: &Edge| (edge.from, LETTERS[edge.letter], edge.to);
                 ProofFile::Stable {
                     edges: found.edges.iter().map(edge).collect(),
                     forms: found.forms.iter().map(rows_as_text).collect(),
                 }
             }
-            Verdict::Unstable(found) => ProofFile::Unstable {
+            StabilityVerdict::Unstable(found) => ProofFile::Unstable {
                 word: word_text(&found.word),
                 radius: found.radius.to_string(),
             },
-            Verdict::Undecided { .. } => return None,
+            StabilityVerdict::Undecided { .. } => return None,
         };
         Some(Self {
             format: FORMAT.to_owned(),
@@ -281,7 +281,7 @@ impl CertificateFile {
     /// # Errors
     ///
     /// [`InvalidCertificate`] with the reason why it proves nothing.
-    pub fn check(&self) -> Result<Verdict, InvalidCertificate> {
+    pub fn check(&self) -> Result<StabilityVerdict, InvalidCertificate> {
         let filters = self.filters.filters()?;
         self.check_size()?;
         match &self.proof {
@@ -295,7 +295,7 @@ impl CertificateFile {
                     forms: forms.iter().map(|form| read_form(form)).collect::<Result<_, _>>()?,
                 };
                 filters.check_stable(&found)?;
-                Ok(Verdict::Stable(found))
+                Ok(StabilityVerdict::Stable(found))
             }
             ProofFile::Unstable { word, radius } => {
                 let found = Product {
@@ -303,7 +303,7 @@ impl CertificateFile {
                     radius: read_number("proof.unstable.radius", radius)?,
                 };
                 filters.check_unstable(&found)?;
-                Ok(Verdict::Unstable(found))
+                Ok(StabilityVerdict::Unstable(found))
             }
         }
     }

@@ -3,7 +3,7 @@
 //! After this file the reader knows how the Lyapunov equation is solved exactly, and what the doubling iteration of the Riccati equation
 //! divides by.
 
-use super::polynomial::Rows;
+use super::polynomial::MatrixRows;
 use crate::number::Field;
 use nalgebra::SMatrix;
 
@@ -28,7 +28,7 @@ use nalgebra::SMatrix;
 /// ```
 ///
 /// Evidence: `elimination_solves_what_can_be_solved` (exact).
-pub fn solve<T: Field + PartialOrd>(mut matrix: Rows<T>, mut right_side: Rows<T>) -> Option<Rows<T>> {
+pub fn solve<T: Field + PartialOrd>(mut matrix: MatrixRows<T>, mut right_side: MatrixRows<T>) -> Option<MatrixRows<T>> {
     let n = matrix.len();
     for column in 0..n {
         let pivot = greatest(&matrix, column)?;
@@ -57,7 +57,7 @@ fn subtract<T: Field>(row: &mut [T], pivot_row: &[T], factor: &T) {
 }
 
 /// The row from the diagonal down with the greatest entry of a column; none if no entry is known to differ from zero.
-fn greatest<T: Field + PartialOrd>(matrix: &Rows<T>, column: usize) -> Option<usize> {
+fn greatest<T: Field + PartialOrd>(matrix: &MatrixRows<T>, column: usize) -> Option<usize> {
     let square = |row: usize| matrix[row][column].clone() * matrix[row][column].clone();
     let mut best = None;
     let mut greatest = T::zero();
@@ -102,7 +102,7 @@ pub fn stein<T: Field + PartialOrd, const N: usize>(
         };
         (0..N * N).map(entry).collect()
     };
-    let matrix: Rows<T> = (0..N * N).map(row).collect();
+    let matrix: MatrixRows<T> = (0..N * N).map(row).collect();
     let side = (0..N * N).map(|index| vec![constant[place(index)].clone()]).collect();
     let solved = solve(matrix, side)?;
     Some(SMatrix::from_fn(|i, j| solved[i * N + j][0].clone()))

@@ -6,20 +6,20 @@
 use super::gains;
 use super::pair::{frozen_matrix, mixing};
 use super::search::spectral_radius;
-use super::verdict::{Depth, Filters, Verdict};
+use super::verdict::{Depth, Filters, StabilityVerdict};
 use crate::number::{Rational, Real};
 use nalgebra::SMatrix;
 use rayon::prelude::*;
 
 /// A point of the map.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Point {
+pub struct MapPoint {
     /// The damping roots θ_v and θ_a.
     pub roots: [Rational; 2],
     /// Their tracking indices Λ_v and Λ_a.
     pub indices: [Rational; 2],
     /// What is known there.
-    pub verdict: Verdict,
+    pub verdict: StabilityVerdict,
     /// The greatest spectral radius of the frozen criterion over the mode probabilities that were tried, in doubles.
     pub frozen_radius: f64,
 }
@@ -28,7 +28,7 @@ pub struct Point {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Map {
     /// The points, `[velocity][acceleration]`.
-    pub points: Vec<Vec<Point>>,
+    pub points: Vec<Vec<MapPoint>>,
 }
 
 impl Map {
@@ -43,7 +43,7 @@ impl Map {
         let (velocity, acceleration) = (axis(gains::alpha_beta_root), axis(gains::alpha_beta_gamma_root));
         let points = velocity.par_iter().map(|v| {
             let row = acceleration.par_iter().map(|a| {
-                let point = Point::new([v.clone(), a.clone()], depth);
+                let point = MapPoint::new([v.clone(), a.clone()], depth);
                 progress();
                 point
             });
@@ -59,9 +59,9 @@ impl Map {
         let mut counts = [0; 3];
         for point in self.points.iter().flatten() {
             let kind = match point.verdict {
-                Verdict::Stable(_) => 0,
-                Verdict::Unstable(_) => 1,
-                Verdict::Undecided { .. } => 2,
+                StabilityVerdict::Stable(_) => 0,
+                StabilityVerdict::Unstable(_) => 1,
+                StabilityVerdict::Undecided { .. } => 2,
             };
             counts[kind] += 1;
         }
@@ -75,7 +75,7 @@ impl Map {
     }
 }
 
-impl Point {
+impl MapPoint {
     fn new(roots: [Rational; 2], depth: Depth) -> Self {
         let filters = Filters::Roots(roots.clone());
         Self {

@@ -22,7 +22,7 @@
 //! spectral radius.
 
 use super::gains;
-use super::polynomial::Rows;
+use super::polynomial::MatrixRows;
 use super::riccati::closed_loop;
 use crate::imm::probability::{mixing_probability, predicted_mode_probability};
 use crate::model::acceleration::{constant_acceleration, embedded_constant_velocity, position_matrix};
@@ -140,7 +140,7 @@ pub fn remark_1_matrix<T: Field, const N: usize>(mixing: &[T], matrices: &[SMatr
 /// ```
 ///
 /// Evidence: `the_frozen_matrix_carries_the_errors_of_the_filter` (exact).
-pub fn frozen_matrix<T: Field, const N: usize>(mixing: &[Vec<T>], matrices: &[SMatrix<T, N, N>]) -> Rows<T> {
+pub fn frozen_matrix<T: Field, const N: usize>(mixing: &[Vec<T>], matrices: &[SMatrix<T, N, N>]) -> MatrixRows<T> {
     let row = |index: usize| {
         let (j, row) = (index / N, index % N);
         let entry = |column: usize| mixing[j][column / N].clone() * matrices[j][(row, column % N)].clone();

@@ -10,7 +10,7 @@ use nalgebra::SMatrix;
 use std::cmp::Ordering;
 
 /// A matrix as a list of rows.
-pub type Rows<T> = Vec<Vec<T>>;
+pub type MatrixRows<T> = Vec<Vec<T>>;
 
 /// The rows of a matrix.
 ///
@@ -24,7 +24,7 @@ pub type Rows<T> = Vec<Vec<T>>;
 ///
 /// assert_eq!(rows_of(&matrix![1.0, 2.0; 3.0, 4.0]), [[1.0, 2.0], [3.0, 4.0]]);
 /// ```
-pub fn rows_of<T: Field, const R: usize, const C: usize>(matrix: &SMatrix<T, R, C>) -> Rows<T> {
+pub fn rows_of<T: Field, const R: usize, const C: usize>(matrix: &SMatrix<T, R, C>) -> MatrixRows<T> {
     let row = |i: usize| (0..C).map(|j| matrix[(i, j)].clone()).collect();
     (0..R).map(row).collect()
 }
@@ -49,7 +49,7 @@ pub fn rows_of<T: Field, const R: usize, const C: usize>(matrix: &SMatrix<T, R, 
 /// ```
 ///
 /// Evidence: `a_matrix_is_a_root_of_its_characteristic_polynomial` (symbolic).
-pub fn characteristic_polynomial<T: Field>(matrix: &Rows<T>) -> Vec<T> {
+pub fn characteristic_polynomial<T: Field>(matrix: &MatrixRows<T>) -> Vec<T> {
     let n = matrix.len();
     let mut coefficients = vec![T::one()];
     let mut power = identity(n);
@@ -70,12 +70,12 @@ pub fn characteristic_polynomial<T: Field>(matrix: &Rows<T>) -> Vec<T> {
     coefficients
 }
 
-fn identity<T: Field>(n: usize) -> Rows<T> {
+fn identity<T: Field>(n: usize) -> MatrixRows<T> {
     let entry = |i, j| if i == j { T::one() } else { T::zero() };
     (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect()
 }
 
-fn times<T: Field>(left: &Rows<T>, right: &Rows<T>) -> Rows<T> {
+fn times<T: Field>(left: &MatrixRows<T>, right: &MatrixRows<T>) -> MatrixRows<T> {
     let entry = |row: &Vec<T>, j: usize| {
         let mut sum = T::zero();
         for (a, b) in row.iter().zip(right) {
@@ -146,7 +146,7 @@ pub fn is_stable_polynomial<T: Field + PartialOrd>(coefficients: &[T]) -> Option
 /// ```
 ///
 /// Evidence: `the_schur_cohn_test_knows_where_roots_are` (exact).
-pub fn has_radius_below<T: Field + PartialOrd>(matrix: &Rows<T>, bound: &T) -> Option<bool> {
+pub fn has_radius_below<T: Field + PartialOrd>(matrix: &MatrixRows<T>, bound: &T) -> Option<bool> {
     let mut scaled = characteristic_polynomial(matrix);
     let mut power = T::one();
     for coefficient in &mut scaled {

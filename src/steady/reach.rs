@@ -3,7 +3,7 @@
 //! After this file the reader knows why a filter may have no steady state, with the part of the state that is at fault. No eigenvalue is
 //! computed: the part is found by elimination, and whether it decays is asked of its characteristic polynomial.
 
-use super::polynomial::{Rows, characteristic_polynomial};
+use super::polynomial::{MatrixRows, characteristic_polynomial};
 use crate::number::{Field, Rational};
 use num_traits::Zero;
 use std::fmt::Write;
@@ -32,9 +32,9 @@ use std::fmt::Write;
 /// ```
 ///
 /// Evidence: `what_is_not_seen_and_does_not_decay_is_named` (exact).
-pub fn unseen_part(motion: &Rows<Rational>, sensor: &Rows<Rational>) -> Vec<Rational> {
+pub fn unseen_part(motion: &MatrixRows<Rational>, sensor: &MatrixRows<Rational>) -> Vec<Rational> {
     let n = motion.len();
-    let mut seen: Rows<Rational> = Vec::new();
+    let mut seen: MatrixRows<Rational> = Vec::new();
     let mut rows = sensor.clone();
     for _ in 0..n {
         seen.extend(rows.iter().cloned());
@@ -56,13 +56,13 @@ fn dot(row: &[Rational], vector: &[Rational]) -> Rational {
 }
 
 /// vᵀ A.
-fn row_times(row: &[Rational], matrix: &Rows<Rational>) -> Vec<Rational> {
+fn row_times(row: &[Rational], matrix: &MatrixRows<Rational>) -> Vec<Rational> {
     let column = |j: usize| matrix.iter().map(|other| other[j].clone()).collect::<Vec<_>>();
     (0..matrix.len()).map(|j| dot(row, &column(j))).collect()
 }
 
 /// A basis of the vectors that all rows are orthogonal to, and the places at which the basis is the identity.
-fn null_space(mut rows: Rows<Rational>, n: usize) -> (Rows<Rational>, Vec<usize>) {
+fn null_space(mut rows: MatrixRows<Rational>, n: usize) -> (MatrixRows<Rational>, Vec<usize>) {
     let mut pivots = Vec::new();
     for column in 0..n {
         let Some(found) = (pivots.len()..rows.len()).find(|&row| !rows[row][column].is_zero()) else {

@@ -30,7 +30,7 @@ const SHORT_ROOT: u64 = 32;
 
 /// What is known of the joint stability of two filters.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Verdict {
+pub enum StabilityVerdict {
     /// Stable however the filters are mixed.
     Stable(Quadratics<3>),
     /// A sequence of mixing probabilities exists under which errors grow without bound.
@@ -151,23 +151,23 @@ impl Filters {
     ///
     /// ```
     /// use immaculate::number::Rational;
-    /// use immaculate::steady::verdict::{Depth, Filters, Verdict, word_text};
+    /// use immaculate::steady::verdict::{Depth, Filters, StabilityVerdict, word_text};
     ///
     /// let filters = Filters::Roots([Rational::new(3, 4), Rational::new(1, 6)]);
-    /// let Verdict::Unstable(product) = filters.decide(Depth::default()) else { panic!("they are unstable") };
+    /// let StabilityVerdict::Unstable(product) = filters.decide(Depth::default()) else { panic!("they are unstable") };
     /// assert_eq!(word_text(&product.word), "vva");
     /// ```
-    pub fn decide(&self, depth: Depth) -> Verdict {
+    pub fn decide(&self, depth: Depth) -> StabilityVerdict {
         let matrices = self.in_doubles();
         let (word, growth) = search::fastest_word(&matrices, depth.word.min(SHORT));
         if let Some(product) = self.grows(word, growth) {
-            return Verdict::Unstable(product);
+            return StabilityVerdict::Unstable(product);
         }
         for memory in 0..=depth.memory {
             let edges = Quadratics::<3>::memory(LETTERS.len(), memory);
             let accepts = |forms: &Quadratics<3>| self.check_stable(forms).is_ok();
             if let Some(forms) = search::quadratics(&matrices, &edges, accepts) {
-                return Verdict::Stable(forms);
+                return StabilityVerdict::Stable(forms);
             }
         }
         let words = [
@@ -176,7 +176,7 @@ impl Filters {
         ];
         let growth = f64::max(words[0].1, words[1].1);
         let grows = words.into_iter().find_map(|(word, growth)| self.grows(word, growth));
-        grows.map_or(Verdict::Undecided { growth }, Verdict::Unstable)
+        grows.map_or(StabilityVerdict::Undecided { growth }, StabilityVerdict::Unstable)
     }
 
     /// A checked certificate of growth for a word.

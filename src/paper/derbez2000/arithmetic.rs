@@ -7,8 +7,8 @@ use super::{OPERATIONS_OF_SECTION_4, OPERATIONS_OF_SECTION_4_1};
 use crate::imm::probability::{mixing_probability, predicted_mode_probability};
 use crate::model::acceleration::{acceleration_part, embedded_constant_velocity, position_matrix};
 use crate::number::{Field, Rational, RationalFunction};
-use crate::paper::specification::{Specification, Table};
-use crate::paper::verdict::{Judgement, Verdict, proven_by, proven_if};
+use crate::paper::specification::{PublishedTable, Specification};
+use crate::paper::verdict::{JudgedClaim, Verdict, proven_by, proven_if};
 use crate::statistics::estimate::figure;
 use crate::steady::gains;
 use crate::steady::mismatch::alpha_beta_lag;
@@ -23,7 +23,7 @@ use std::fmt::Write;
 /// ```
 ///
 /// Evidence: `without_noise_in_the_gain_calculation_the_mismatched_error_is_not_bounded`.
-pub fn constant_bounded_error(s: &Specification) -> Judgement {
+pub fn constant_bounded_error(s: &Specification) -> JudgedClaim {
     let [root, interval, acceleration] = ["root", "t", "a"].map(RationalFunction::unknown);
     // Jury's conditions for a second-order filter are 0 < α, 0 < β and β < 4 − 2α; the last leaves 4θ.
     let gain = gains::alpha_beta_gain(&root, &interval);
@@ -76,7 +76,7 @@ fn mixing(of_first: i64, previous: usize, current: usize) -> Rational {
 }
 
 /// The spread of the means of two models, one of which is right and the other off by one, beside its printed bound.
-pub fn moment_matching_bound(s: &Specification) -> Judgement {
+pub fn moment_matching_bound(s: &Specification) -> JudgedClaim {
     let mut evidence = String::from(
         "One coordinate, p = 0.95, model 1 off by 1 and model 2 right, so that P^{e,1} = 1 and P^{e,2} = 0. Exact spread of the mixed \
          estimate of model 2, μ^{1|2} μ^{2|2}, and its printed bound Σᵢ μ^{i|2} Σ_{l≠i} (μ^{i|l})² P^{e,l}; the same with μ^{l|i}, by μ₁:",
@@ -106,7 +106,7 @@ pub fn moment_matching_bound(s: &Specification) -> Judgement {
 }
 
 /// ε = (μ^{1|2})² over the probabilities of model 1.
-pub fn moment_matching_size(s: &Specification) -> Judgement {
+pub fn moment_matching_size(s: &Specification) -> JudgedClaim {
     let small = Rational::new(1, 20) * Rational::new(1, 20);
     let mut evidence = String::from("Exact, a = 0.95, (1 − a)² = 0.0025. ε = (μ^{1|2})² by μ₁:");
     let mut greatest = Rational::zero();
@@ -155,7 +155,7 @@ fn rounding(value: f64, table: u32) -> f64 {
 }
 
 /// Whether the overall errors of a table can be the roots of the sums of the squares above them.
-fn overall(table: &Table, evidence: &mut String) -> bool {
+fn overall(table: &PublishedTable, evidence: &mut String) -> bool {
     let row = |name: &str| table.rows.iter().find(|row| row.name == name).map(|row| &row.values);
     let (Some(x), Some(y), Some(printed)) = (row("x-RMS"), row("y-RMS"), row("Overall")) else {
         return false;
@@ -186,7 +186,7 @@ fn overall(table: &Table, evidence: &mut String) -> bool {
 }
 
 /// The overall errors against their components.
-pub fn table_arithmetic(s: &Specification) -> Judgement {
+pub fn table_arithmetic(s: &Specification) -> JudgedClaim {
     let mut evidence =
         String::from("√(x² + y²), from the least and the greatest values that round to the printed ones:");
     let verdicts: Vec<bool> = s.tables.iter().map(|table| overall(table, &mut evidence)).collect();
@@ -199,7 +199,7 @@ pub fn table_arithmetic(s: &Specification) -> Judgement {
 }
 
 /// The three places that give operations.
-pub fn operation_counts(s: &Specification) -> Judgement {
+pub fn operation_counts(s: &Specification) -> JudgedClaim {
     let of_table = s.tables[0].rows.iter().find(|row| row.name == "Cost/flops");
     let of_table: Vec<f64> = of_table.map(|row| row.values.clone()).unwrap_or_default();
     let as_in_the_table = |places: [u32; 3]| places.map(f64::from).as_slice() == of_table;
@@ -219,7 +219,7 @@ pub fn operation_counts(s: &Specification) -> Judgement {
 }
 
 /// Nothing tests it.
-pub fn nonlinear_filters(s: &Specification) -> Judgement {
+pub fn nonlinear_filters(s: &Specification) -> JudgedClaim {
     let evidence = "The paper runs no such filter and names two of other papers, by convolution and by chaos expansion, of which it gives no \
                     equation: there is nothing to reproduce.";
     s.judgement(

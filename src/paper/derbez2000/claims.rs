@@ -5,17 +5,17 @@
 //! [`arithmetic`].
 
 use super::arithmetic::published;
-use super::contestants::{Contestant, Coordinates, Reading};
-use super::path::{Motion, Place};
+use super::contestants::{CoordinateFilters, Coordinates, Reading};
+use super::path::{PlaneState, Regime};
 use super::relative::{Relative, Tally, extremes, relative};
-use super::scenario::{Scenario, Steps, follow};
+use super::scenario::{CoordinateScenario, Steps, follow};
 use super::{CLOSEST_POINT, arithmetic, long_term, scenario, search, stability};
 use crate::imm::{Equations, Interaction};
-use crate::paper::comparison::Quantity;
+use crate::paper::comparison::ErrorQuantity;
 use crate::paper::experiment::Experiment;
 use crate::paper::monte_carlo::Progress;
 use crate::paper::specification::{Choices, InvalidChoice, Specification, derbez2000 as specification};
-use crate::paper::verdict::{Judgement, Verdict};
+use crate::paper::verdict::{JudgedClaim, Verdict};
 use crate::paper::{Effort, Paper};
 use crate::statistics::Estimate;
 use crate::statistics::delay::detection_delays;
@@ -31,15 +31,15 @@ const OTHER_READING: usize = 3;
 const WITHOUT_SPREAD: usize = 4;
 
 /// A scenario and its runs.
-pub type Runs = Experiment<Scenario>;
+pub type CoordinateRuns = Experiment<CoordinateScenario>;
 
 /// What the judges ask about.
 #[derive(Debug, Clone)]
-pub struct Evidence {
+pub struct CoordinateEvidence {
     /// Scenario 2 at its defaults, then under every alternative by itself.
-    pub manoeuvres: Vec<Runs>,
+    pub manoeuvres: Vec<CoordinateRuns>,
     /// Scenario 1, likewise.
-    pub acceleration: Vec<Runs>,
+    pub acceleration: Vec<CoordinateRuns>,
 }
 
 /// Judges every claim.
@@ -47,9 +47,9 @@ pub struct Evidence {
 /// # Errors
 ///
 /// [`InvalidChoice`] when the specification lacks an alternative that a judge asks for.
-pub fn judge(effort: Effort, progress: Progress) -> Result<Vec<Judgement>, InvalidChoice> {
+pub fn judge(effort: Effort, progress: Progress) -> Result<Vec<JudgedClaim>, InvalidChoice> {
     let s = specification();
-    let runs = Evidence::new(effort, progress)?;
+    let runs = CoordinateEvidence::new(effort, progress)?;
     let map = stability::map();
     Ok(vec![
         long_term::half_the_load(s),
@@ -81,7 +81,7 @@ pub fn judge(effort: Effort, progress: Progress) -> Result<Vec<Judgement>, Inval
     ])
 }
 
-impl Evidence {
+impl CoordinateEvidence {
     /// Runs both scenarios at their defaults and under every alternative by itself.
     ///
     /// # Errors
@@ -94,7 +94,7 @@ impl Evidence {
             add_contestants(&mut scenario);
             Ok(Experiment::new(scenario, effort, progress))
         };
-        let of_simulation = |choices: &Choices| -> Result<Vec<Runs>, InvalidChoice> {
+        let of_simulation = |choices: &Choices| -> Result<Vec<CoordinateRuns>, InvalidChoice> {
             let mut all = vec![choices.clone()];
             all.extend(paper.open_choices(choices));
             all.iter().map(run).collect()
@@ -108,7 +108,7 @@ impl Evidence {
 }
 
 /// The other reading of the fixed-gain filter, and an IMM filter that leaves the spread of the means out of its mixed covariances.
-fn add_contestants(scenario: &mut Scenario) {
+fn add_contestants(scenario: &mut CoordinateScenario) {
     let (setup, variances) = (&scenario.setup, scenario.setup.measurement_variances(&scenario.path));
     let mut other = setup.fixed_gain(variances);
     let (name, interaction) = match setup.reading {
@@ -119,7 +119,7 @@ fn add_contestants(scenario: &mut Scenario) {
     for problem in &mut other.problems {
         problem.interaction = interaction;
     }
-    let without_spread = Contestant {
+    let without_spread = CoordinateFilters {
         name: "without spread".to_owned(),
         equations: Equations {
             mixed_covariance: |_, previous, now, j| {
@@ -133,17 +133,17 @@ fn add_contestants(scenario: &mut Scenario) {
     scenario.contestants.extend([other, without_spread]);
 }
 
-fn any(_: Motion) -> bool {
+fn any(_: Regime) -> bool {
     true
 }
 
-fn in_turn(motion: Motion) -> bool {
-    motion == Motion::Turn
+fn in_turn(motion: Regime) -> bool {
+    motion == Regime::Turn
 }
 
 /// The fixed-gain filter beside the full one.
-pub fn almost_as_well(s: &Specification, runs: &Evidence) -> Judgement {
-    let position = |other: usize| relative(&runs.manoeuvres, [other, IMM], Quantity::Position, any);
+pub fn almost_as_well(s: &Specification, runs: &CoordinateEvidence) -> JudgedClaim {
+    let position = |other: usize| relative(&runs.manoeuvres, [other, IMM], ErrorQuantity::Position, any);
     let (chosen, other) = (position(FIXED_GAIN), position(OTHER_READING));
     // Almost as well: worse by less than a tenth.
     let tally = Tally::below(&chosen, 0.1).and(Tally::below(&other, 0.1));
@@ -159,12 +159,12 @@ pub fn almost_as_well(s: &Specification, runs: &Evidence) -> Judgement {
 
 /// How large the spread of the means is beside the covariance to which it is added, for the position, in each step of either coordinate
 /// and mode.
-fn spread_ratios(runs: &Runs, seed: u64) -> Vec<f64> {
+fn spread_ratios(runs: &CoordinateRuns, seed: u64) -> Vec<f64> {
     let scenario = &runs.scenario;
     let mut ratios = Vec::new();
     for run in 0..runs.runs.len() {
         let mut last: Option<[Vec<f64>; 2]> = None;
-        let mut keep = |steps: Steps, _: &Place| {
+        let mut keep = |steps: Steps, _: &PlaneState| {
             let variances = steps.map(|step| {
                 step.updated
                     .iter()
@@ -196,7 +196,7 @@ fn spread_ratios(runs: &Runs, seed: u64) -> Vec<f64> {
 }
 
 /// What the spread of the means adds to the mixed covariances, and what leaving it out costs.
-pub fn minor_covariance_changes(s: &Specification, runs: &Evidence, effort: Effort) -> Judgement {
+pub fn minor_covariance_changes(s: &Specification, runs: &CoordinateEvidence, effort: Effort) -> JudgedClaim {
     let mut evidence = String::from(
         "Spread of the means over the variance of the position that it is added to, full IMM at the defaults:",
     );
@@ -213,7 +213,7 @@ pub fn minor_covariance_changes(s: &Specification, runs: &Evidence, effort: Effo
         );
     }
     let [first, second] = [&runs.acceleration, &runs.manoeuvres]
-        .map(|experiments| relative(experiments, [WITHOUT_SPREAD, IMM], Quantity::Position, any));
+        .map(|experiments| relative(experiments, [WITHOUT_SPREAD, IMM], ErrorQuantity::Position, any));
     // Minor in performance: less than a tenth of the error.
     let tally = Tally::within(&first, 0.1).and(Tally::within(&second, 0.1));
     let _ = write!(
@@ -228,7 +228,7 @@ pub fn minor_covariance_changes(s: &Specification, runs: &Evidence, effort: Effo
 
 /// The mean delay of a contestant in each run, in steps, over the changes of regime in either coordinate; a change that is never noticed
 /// counts with all the steps until the next.
-fn delays(runs: &Runs, contestant: usize) -> Vec<f64> {
+fn delays(runs: &CoordinateRuns, contestant: usize) -> Vec<f64> {
     let lanes = [0, 1].map(|c| {
         runs.scenario
             .accelerates(c)
@@ -264,12 +264,12 @@ fn delays(runs: &Runs, contestant: usize) -> Vec<f64> {
 }
 
 /// How late the fixed-gain filter notices a change of regime.
-pub fn sluggish_onset(s: &Specification, runs: &Evidence) -> Judgement {
+pub fn sluggish_onset(s: &Specification, runs: &CoordinateEvidence) -> JudgedClaim {
     let mut evidence = String::from(
         "Scenario 2, mean delay of the true model over all changes of regime in x and y, a change that is never noticed counting with all \
          steps until the next; fixed gain less IMM, as a part of the latter:",
     );
-    let of_experiment = |experiment: &Runs| {
+    let of_experiment = |experiment: &CoordinateRuns| {
         let (of_imm, of_fixed) = (delays(experiment, IMM), delays(experiment, FIXED_GAIN));
         let pairs: Vec<f64> = of_fixed.iter().zip(&of_imm).map(|(fixed, imm)| fixed - imm).collect();
         let (difference, delay) = (mean(&pairs), mean(&of_imm).value);
@@ -303,7 +303,7 @@ pub fn sluggish_onset(s: &Specification, runs: &Evidence) -> Judgement {
 const BEARING_NOISES: std::ops::RangeInclusive<i32> = -10..=2;
 
 /// The contestant on range and bearing themselves, the process noise of the bearing multiplied by a factor.
-fn polar(contestant: &Contestant, factor: f64, variances: [f64; 2]) -> Contestant {
+fn polar(contestant: &CoordinateFilters, factor: f64, variances: [f64; 2]) -> CoordinateFilters {
     let mut polar = contestant.clone();
     let _ = write!(polar.name, " of range and bearing");
     polar.coordinates = Coordinates::Polar;
@@ -321,7 +321,11 @@ fn polar(contestant: &Contestant, factor: f64, variances: [f64; 2]) -> Contestan
 /// # Errors
 ///
 /// [`InvalidChoice`] when the specification lacks an alternative that is asked for.
-pub fn cartesian_filtering(s: &Specification, effort: Effort, progress: Progress) -> Result<Judgement, InvalidChoice> {
+pub fn cartesian_filtering(
+    s: &Specification,
+    effort: Effort,
+    progress: Progress,
+) -> Result<JudgedClaim, InvalidChoice> {
     let mut evidence = String::from(
         "Scenario 1, position error of x and y less that of range and bearing with the best of 13 noises of the bearing.",
     );
@@ -336,12 +340,12 @@ pub fn cartesian_filtering(s: &Specification, effort: Effort, progress: Progress
                 ("over all", &(|_: usize| true) as &dyn Fn(usize) -> bool),
                 ("near the radar", &near),
             ] {
-                let error = |c: usize| comparison.error_over(c, Quantity::Position, chosen).value;
+                let error = |c: usize| comparison.error_over(c, ErrorQuantity::Position, chosen).value;
                 let polar = (2..both.scenario.contestants.len()).filter(|c| c % 2 == filter);
                 let Some(best) = polar.min_by(|a, b| error(*a).total_cmp(&error(*b))) else {
                     continue;
                 };
-                let difference = comparison.difference_over(filter, best, Quantity::Position, chosen);
+                let difference = comparison.difference_over(filter, best, ErrorQuantity::Position, chosen);
                 let difference = Estimate {
                     value: difference.value / error(best),
                     standard_error: difference.standard_error / error(best),
@@ -367,7 +371,7 @@ pub fn cartesian_filtering(s: &Specification, effort: Effort, progress: Progress
 }
 
 /// IMM and CA of x and y, then both of range and bearing with each of the noises.
-fn both_coordinates(scenario: Scenario) -> Scenario {
+fn both_coordinates(scenario: CoordinateScenario) -> CoordinateScenario {
     let mut contestants = vec![scenario.contestants[IMM].clone(), scenario.contestants[CA].clone()];
     for power in BEARING_NOISES {
         let tenth_or_ten = if power < 0 { 0.1 } else { 10.0 };
@@ -377,14 +381,14 @@ fn both_coordinates(scenario: Scenario) -> Scenario {
             contestants.push(polar(&contestants[filter], factor, scenario.variances));
         }
     }
-    Scenario {
+    CoordinateScenario {
         contestants,
         ..scenario
     }
 }
 
 /// Scenario 1: all filters beside that of constant acceleration.
-pub fn equal_on_acceleration(s: &Specification, runs: &Evidence) -> Judgement {
+pub fn equal_on_acceleration(s: &Specification, runs: &CoordinateEvidence) -> JudgedClaim {
     let mut evidence = String::from("Scenario 1, position error less that of CA, as a part of the latter.");
     let mut tally = Tally::default();
     for (name, filter) in [
@@ -392,7 +396,7 @@ pub fn equal_on_acceleration(s: &Specification, runs: &Evidence) -> Judgement {
         ("Fixed gain", FIXED_GAIN),
         ("Its other reading", OTHER_READING),
     ] {
-        let all = relative(&runs.acceleration, [filter, CA], Quantity::Position, any);
+        let all = relative(&runs.acceleration, [filter, CA], ErrorQuantity::Position, any);
         let within = |one: &&Relative| Tally::within(std::slice::from_ref(*one), 0.01).holds == 1;
         let equal: Vec<&str> = all.iter().filter(within).map(|one| one.choices.as_str()).collect();
         let _ = write!(
@@ -408,11 +412,11 @@ pub fn equal_on_acceleration(s: &Specification, runs: &Evidence) -> Judgement {
 }
 
 /// The y-error of the fixed-gain filter beside that of constant acceleration.
-pub fn thirty_per_cent(s: &Specification, runs: &Evidence) -> Judgement {
+pub fn thirty_per_cent(s: &Specification, runs: &CoordinateEvidence) -> JudgedClaim {
     let [_, y] = published(s);
     // The printed figures are rounded in the third decimal.
     let greatest = 1.0 - (y[FIXED_GAIN] - 0.0005) / (y[CA] + 0.0005);
-    let all = relative(&runs.manoeuvres, [FIXED_GAIN, CA], Quantity::Y, any);
+    let all = relative(&runs.manoeuvres, [FIXED_GAIN, CA], ErrorQuantity::Y, any);
     let tally = Tally::below(&all, -0.3);
     let evidence = format!(
         "Table 1 itself: 1 − {}/{} is {:.1} %, and at most {:.1} % before rounding; the overall error is smaller by {:.1} %. Scenario 2, \
@@ -441,7 +445,7 @@ fn overall_gain(s: &Specification) -> f64 {
 }
 
 /// The full filter in the turn.
-pub fn full_imm_much_better(s: &Specification, runs: &Evidence) -> Judgement {
+pub fn full_imm_much_better(s: &Specification, runs: &CoordinateEvidence) -> JudgedClaim {
     let [x, y] = published(s);
     let mut evidence = format!(
         "Table 1 has IMM at {} and {}, fixed gain at {} and {}, in x and y. Scenario 2 in the turn, position error of IMM less the other's, \
@@ -450,7 +454,7 @@ pub fn full_imm_much_better(s: &Specification, runs: &Evidence) -> Judgement {
     );
     let mut tally = Tally::default();
     for (name, other) in [("fixed gain", FIXED_GAIN), ("CA", CA)] {
-        let all = relative(&runs.manoeuvres, [IMM, other], Quantity::Position, in_turn);
+        let all = relative(&runs.manoeuvres, [IMM, other], ErrorQuantity::Position, in_turn);
         let _ = write!(evidence, " {name}: {}.", extremes(&all));
         // Much better: by more than a tenth.
         tally = tally.and(Tally::below(&all, -0.1));
@@ -460,7 +464,7 @@ pub fn full_imm_much_better(s: &Specification, runs: &Evidence) -> Judgement {
 }
 
 /// Scenario 3, whose data were not published.
-pub fn third_set_supports(s: &Specification, runs: &Evidence) -> Judgement {
+pub fn third_set_supports(s: &Specification, runs: &CoordinateEvidence) -> JudgedClaim {
     let of_table = |name: &str| {
         let row = s.tables[1].rows.iter().find(|row| row.name == name);
         row.map_or(f64::NAN, |row| {
@@ -472,7 +476,7 @@ pub fn third_set_supports(s: &Specification, runs: &Evidence) -> Judgement {
         })
     };
     let comparison = runs.manoeuvres[0].comparison();
-    let error = comparison.error(IMM, Quantity::Position);
+    let error = comparison.error(IMM, ErrorQuantity::Position);
     let of_one_run = error.standard_error * (runs.manoeuvres[0].runs.len() as f64).sqrt() / error.value;
     let evidence = format!(
         "Scenario 3 filters measurements of another paper, which were not published. In table 2 the filters differ by {:.3} % in x, {:.3} % in y \

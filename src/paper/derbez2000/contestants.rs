@@ -9,7 +9,7 @@
 //! CA           one Kalman filter of constant acceleration
 //! ```
 
-use super::path::{Path, Place, position_of};
+use super::path::{PlaneState, TruePath, position_of};
 use super::radar::{self, converted_variances};
 use super::{INITIAL_PROBABILITIES, MEASUREMENT_VARIANCES, TRANSITION};
 use crate::filter::Filter;
@@ -33,7 +33,7 @@ pub enum Coordinates {
 
 /// A filter of the comparison: two filters of one coordinate each.
 #[derive(Debug, Clone)]
-pub struct Contestant {
+pub struct CoordinateFilters {
     /// The paper's name for it.
     pub name: String,
     /// What it filters.
@@ -72,7 +72,7 @@ impl Coordinates {
     /// ```
     ///
     /// Evidence: `range_and_bearing_move_as_their_derivatives_say`.
-    pub fn of(self, place: &Place) -> Place {
+    pub fn of(self, place: &PlaneState) -> PlaneState {
         if self == Self::Cartesian {
             return *place;
         }
@@ -93,7 +93,7 @@ impl Coordinates {
     }
 
     /// Position and velocity [x, ẋ, y, ẏ] of estimates in these coordinates.
-    pub(super) fn back(self, [first, second]: Place) -> Vector4<f64> {
+    pub(super) fn back(self, [first, second]: PlaneState) -> Vector4<f64> {
         if self == Self::Cartesian {
             return Vector4::new(first[0], first[1], second[0], second[1]);
         }
@@ -122,7 +122,7 @@ pub enum Reading {
 
 /// R of a coordinate.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Noise {
+pub enum MeasurementNoise {
     /// The mean over the true path of the converted measurement's variance, for all filters.
     MeanOverThePath,
     /// That of each converted measurement for the Kalman filters, the mean for the fixed gains.
@@ -133,7 +133,7 @@ pub enum Noise {
 
 /// What the filters are told.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Setup {
+pub struct CoordinateSetup {
     /// t, s.
     pub interval: f64,
     /// From what the fixed-gain filters start.
@@ -141,34 +141,34 @@ pub struct Setup {
     /// q of both modes, (m/s²)².
     pub noise_variance: f64,
     /// R.
-    pub noise: Noise,
+    pub noise: MeasurementNoise,
     /// The variance of each entry of the Kalman filters' state at step 0.
     pub initial_variance: f64,
 }
 
-impl Setup {
+impl CoordinateSetup {
     /// The paper's three filters, in the order of its tables.
-    pub fn contestants(&self, path: &Path) -> Vec<Contestant> {
+    pub fn contestants(&self, path: &TruePath) -> Vec<CoordinateFilters> {
         let variances = self.measurement_variances(path);
         vec![self.imm(variances), self.fixed_gain(variances), self.single(variances)]
     }
 
     /// The full IMM filter.
-    pub fn imm(&self, variances: [f64; 2]) -> Contestant {
-        Contestant {
+    pub fn imm(&self, variances: [f64; 2]) -> CoordinateFilters {
+        CoordinateFilters {
             name: "IMM".to_owned(),
             coordinates: Coordinates::Cartesian,
             problems: variances.map(|variance| self.problem(variance)),
             equations: Equations::standard(),
             initial_probabilities: INITIAL_PROBABILITIES.to_vec(),
             initial_variance: self.initial_variance,
-            follows_noise: self.noise == Noise::OfEachMeasurement,
+            follows_noise: self.noise == MeasurementNoise::OfEachMeasurement,
         }
     }
 
     /// The IMM filter with fixed gains.
-    pub fn fixed_gain(&self, variances: [f64; 2]) -> Contestant {
-        Contestant {
+    pub fn fixed_gain(&self, variances: [f64; 2]) -> CoordinateFilters {
+        CoordinateFilters {
             name: "Fixed Gain".to_owned(),
             problems: variances.map(|variance| Problem {
                 filters: self.steady_gains(variance).into_iter().map(Filter::given).collect(),
@@ -185,9 +185,9 @@ impl Setup {
     }
 
     /// The Kalman filter of constant acceleration.
-    pub fn single(&self, variances: [f64; 2]) -> Contestant {
+    pub fn single(&self, variances: [f64; 2]) -> CoordinateFilters {
         let imm = self.imm(variances);
-        Contestant {
+        CoordinateFilters {
             name: "CA".to_owned(),
             problems: imm.problems.clone().map(|problem| Problem {
                 modes: problem.modes[1..].to_vec(),
@@ -200,8 +200,8 @@ impl Setup {
     }
 
     /// R of either coordinate, where it is constant.
-    pub fn measurement_variances(&self, path: &Path) -> [f64; 2] {
-        if let Noise::Constant(variance) = self.noise {
+    pub fn measurement_variances(&self, path: &TruePath) -> [f64; 2] {
+        if let MeasurementNoise::Constant(variance) = self.noise {
             return [variance; 2];
         }
         let at = |place: &[Vector3<f64>; 2]| {

@@ -10,7 +10,7 @@ use crate::paper::Effort;
 use crate::paper::monte_carlo::Generator;
 use crate::paper::operations::{CovarianceUpdate, OneCoordinate, Sums};
 use crate::paper::specification::Specification;
-use crate::paper::verdict::{Judgement, Verdict, proven_by, refuted_by};
+use crate::paper::verdict::{JudgedClaim, Verdict, proven_by, refuted_by};
 use crate::statistics::estimate::figure;
 use crate::steady::gains;
 use crate::steady::long_term::Form as Steps;
@@ -19,7 +19,7 @@ use crate::steady::simulated::{Grid, POINTS, Start};
 use std::fmt::Write;
 
 /// Half the load of the CA Kalman filter.
-pub fn half_the_load(s: &Specification) -> Judgement {
+pub fn half_the_load(s: &Specification) -> JudgedClaim {
     let mut evidence =
         String::from("Operations of one cycle, both coordinates, by the formula of the equations, every matrix full:");
     let mut ratios = Vec::new();
@@ -61,7 +61,7 @@ pub fn half_the_load(s: &Specification) -> Judgement {
 }
 
 /// The proposition and (7).
-pub fn proposition(s: &Specification) -> Judgement {
+pub fn proposition(s: &Specification) -> JudgedClaim {
     let [root, t, a, r] = ["theta", "t", "a", "R"].map(RationalFunction::unknown);
     let gain = gains::alpha_beta_gain(&root, &t);
     let missed = acceleration_response(&t) * a.clone();
@@ -96,7 +96,7 @@ pub fn proposition(s: &Specification) -> Judgement {
 }
 
 /// The accuracy of steps 0 to 6, figures 1 and 2.
-pub fn algorithm_accuracy(s: &Specification, effort: Effort) -> Judgement {
+pub fn algorithm_accuracy(s: &Specification, effort: Effort) -> JudgedClaim {
     let noise = |point: usize| {
         let mut generator = Generator::new(effort.seed, point as u64);
         move || generator.standard_normal()

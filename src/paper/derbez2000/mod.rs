@@ -51,12 +51,12 @@ pub mod scenario;
 pub mod search;
 pub mod stability;
 
-use super::comparison::Quantity;
+use super::comparison::ErrorQuantity;
 use super::specification::{Choices, InvalidChoice, derbez2000 as specification};
 use crate::model::Conversion;
-use contestants::{Noise, Reading, Setup};
-use path::{Line, Manoeuvres, Path};
-use scenario::Scenario;
+use contestants::{CoordinateSetup, MeasurementNoise, Reading};
+use path::{Line, Manoeuvres, TruePath};
+use scenario::CoordinateScenario;
 
 /// t of scenario 1, s: "one rotation every 2 seconds".
 pub const INTERVAL: f64 = 2.0;
@@ -103,7 +103,7 @@ const DEGREE: f64 = std::f64::consts::PI / 180.0;
 /// # Errors
 ///
 /// [`InvalidChoice`] for a parameter or an alternative that the paper's scenarios do not have.
-pub fn scenario(choices: &Choices) -> Result<Scenario, InvalidChoice> {
+pub fn scenario(choices: &Choices) -> Result<CoordinateScenario, InvalidChoice> {
     let specification = specification();
     specification.check(choices)?;
     let chosen = |parameter| specification.chosen(choices, parameter);
@@ -112,7 +112,7 @@ pub fn scenario(choices: &Choices) -> Result<Scenario, InvalidChoice> {
         (_, "1") => (path::manoeuvres(&manoeuvres(choices)?, PHASES, 1.0), 1.0),
         _ => (path::manoeuvres(&manoeuvres(choices)?, PHASES, INTERVAL), INTERVAL),
     };
-    let setup = Setup {
+    let setup = CoordinateSetup {
         interval,
         reading: match chosen("mixing")? {
             "unmixed" => Reading::Unmixed,
@@ -125,11 +125,11 @@ pub fn scenario(choices: &Choices) -> Result<Scenario, InvalidChoice> {
             _ => 5.0,
         },
         noise: match chosen("measurement-variance")? {
-            "per-step" => Noise::OfEachMeasurement,
-            "range" => Noise::Constant(MEASUREMENT_VARIANCES[0]),
-            "0-05" => Noise::Constant(0.05),
-            "0-5" => Noise::Constant(0.5),
-            _ => Noise::MeanOverThePath,
+            "per-step" => MeasurementNoise::OfEachMeasurement,
+            "range" => MeasurementNoise::Constant(MEASUREMENT_VARIANCES[0]),
+            "0-05" => MeasurementNoise::Constant(0.05),
+            "0-5" => MeasurementNoise::Constant(0.5),
+            _ => MeasurementNoise::MeanOverThePath,
         },
         initial_variance: match chosen("initial-covariance")? {
             "small" => 1e-6,
@@ -145,8 +145,13 @@ pub fn scenario(choices: &Choices) -> Result<Scenario, InvalidChoice> {
 }
 
 /// A scenario on a path with the paper's three filters.
-pub fn assembled(choices: Choices, path: Path, conversion: Conversion, setup: &Setup) -> Scenario {
-    Scenario {
+pub fn assembled(
+    choices: Choices,
+    path: TruePath,
+    conversion: Conversion,
+    setup: &CoordinateSetup,
+) -> CoordinateScenario {
+    CoordinateScenario {
         choices,
         runs: RUNS,
         setup: *setup,
@@ -159,7 +164,7 @@ pub fn assembled(choices: Choices, path: Path, conversion: Conversion, setup: &S
 
 /// Scenario 1: "moving at an acceleration of 5", "in a straight line with a distance of closest approach to the radar of 500 at the 60th
 /// data point".
-fn accelerated(alternative: &str) -> Path {
+fn accelerated(alternative: &str) -> TruePath {
     let line = match alternative {
         "turning-point" => Line::TurningPoint,
         "reversed" => Line::Reversed,
@@ -204,11 +209,11 @@ fn manoeuvres(choices: &Choices) -> Result<Manoeuvres, InvalidChoice> {
 }
 
 /// The quantity of a row of the paper's table 1; none for its costs.
-pub fn quantity_of_row(name: &str) -> Option<Quantity> {
+pub fn quantity_of_row(name: &str) -> Option<ErrorQuantity> {
     match name {
-        "x-RMS" => Some(Quantity::X),
-        "y-RMS" => Some(Quantity::Y),
-        "Overall" => Some(Quantity::Position),
+        "x-RMS" => Some(ErrorQuantity::X),
+        "y-RMS" => Some(ErrorQuantity::Y),
+        "Overall" => Some(ErrorQuantity::Position),
         _ => None,
     }
 }

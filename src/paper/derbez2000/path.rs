@@ -8,11 +8,11 @@ use crate::model::motion::coordinated_turn;
 use nalgebra::{Vector2, Vector3, Vector4};
 
 /// The two coordinates' states [p, v, a], m, m/s and m/s².
-pub type Place = [Vector3<f64>; 2];
+pub type PlaneState = [Vector3<f64>; 2];
 
 /// What the target does in a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Motion {
+pub enum Regime {
     /// Constant acceleration.
     Acceleration,
     /// Constant velocity.
@@ -23,13 +23,13 @@ pub enum Motion {
 
 /// A path: the state at step 0, those of steps 1, 2, …, and what led to them.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Path {
+pub struct TruePath {
     /// The state at step 0.
-    pub start: Place,
+    pub start: PlaneState,
     /// The states at steps 1, 2, …
-    pub places: Vec<Place>,
+    pub places: Vec<PlaneState>,
     /// What the target did in steps 1, 2, …
-    pub motions: Vec<Motion>,
+    pub motions: Vec<Regime>,
 }
 
 /// What scenario 1 leaves open about its straight line.
@@ -59,7 +59,7 @@ pub struct Manoeuvres {
 }
 
 /// Scenario 1: x = ±½ a (τ − τ₀)² + x₀ and y = the distance of the closest approach, which step `closest` reaches.
-pub fn line(line: Line, acceleration: f64, distance: f64, closest: usize, points: usize, interval: f64) -> Path {
+pub fn line(line: Line, acceleration: f64, distance: f64, closest: usize, points: usize, interval: f64) -> TruePath {
     let closest_time = closest as f64 * interval;
     let run_up = acceleration * closest_time * closest_time / 2.0;
     let at = |k: usize| {
@@ -76,10 +76,10 @@ pub fn line(line: Line, acceleration: f64, distance: f64, closest: usize, points
         };
         [x, Vector3::new(distance, 0.0, 0.0)]
     };
-    Path {
+    TruePath {
         start: at(0),
         places: (1..=points).map(at).collect(),
-        motions: vec![Motion::Acceleration; points],
+        motions: vec![Regime::Acceleration; points],
     }
 }
 
@@ -89,9 +89,9 @@ fn falling(acceleration: f64, time: f64) -> Vector3<f64> {
 }
 
 /// Scenario 2: acceleration along the heading, straight on, a turn, straight on.
-pub fn manoeuvres(open: &Manoeuvres, phases: [usize; 4], interval: f64) -> Path {
+pub fn manoeuvres(open: &Manoeuvres, phases: [usize; 4], interval: f64) -> TruePath {
     let direction = direction(open.heading);
-    let mut place: Place = [0, 1].map(|c| {
+    let mut place: PlaneState = [0, 1].map(|c| {
         Vector3::new(
             open.start[c],
             open.speed * direction[c],
@@ -99,19 +99,19 @@ pub fn manoeuvres(open: &Manoeuvres, phases: [usize; 4], interval: f64) -> Path 
         )
     });
     let start = place;
-    let kinds = [Motion::Acceleration, Motion::Straight, Motion::Turn, Motion::Straight];
+    let kinds = [Regime::Acceleration, Regime::Straight, Regime::Turn, Regime::Straight];
     let phases = kinds.into_iter().zip(phases);
-    let motions: Vec<Motion> = phases.flat_map(|(motion, steps)| vec![motion; steps]).collect();
+    let motions: Vec<Regime> = phases.flat_map(|(motion, steps)| vec![motion; steps]).collect();
     let mut places = Vec::with_capacity(motions.len());
     for motion in &motions {
         place = match motion {
-            Motion::Acceleration => place.map(|state| constant_acceleration(&interval) * state),
-            Motion::Straight => place.map(|state| straight(state, interval)),
-            Motion::Turn => turn(place, open.turn_rate, interval),
+            Regime::Acceleration => place.map(|state| constant_acceleration(&interval) * state),
+            Regime::Straight => place.map(|state| straight(state, interval)),
+            Regime::Turn => turn(place, open.turn_rate, interval),
         };
         places.push(place);
     }
-    Path { start, places, motions }
+    TruePath { start, places, motions }
 }
 
 /// The unit vector of a heading.
@@ -125,7 +125,7 @@ fn straight(state: Vector3<f64>, interval: f64) -> Vector3<f64> {
 }
 
 /// One step of a turn; the acceleration at its end is ω times the velocity, a right angle to the left of it.
-fn turn([x, y]: Place, turn_rate: f64, interval: f64) -> Place {
+fn turn([x, y]: PlaneState, turn_rate: f64, interval: f64) -> PlaneState {
     let turned = coordinated_turn(&turn_rate, &interval) * Vector4::new(x[0], x[1], y[0], y[1]);
     [
         Vector3::new(turned[0], turned[1], -turn_rate * turned[3]),
@@ -134,6 +134,6 @@ fn turn([x, y]: Place, turn_rate: f64, interval: f64) -> Place {
 }
 
 /// The position of both coordinates.
-pub fn position_of(place: &Place) -> Vector2<f64> {
+pub fn position_of(place: &PlaneState) -> Vector2<f64> {
     Vector2::new(place[0][0], place[1][0])
 }

@@ -3,9 +3,9 @@
 //! After this file the reader knows how a claim about filters is judged whose configuration was not published: in each configuration it is
 //! certainly true, certainly false, or neither, and the verdict says whether what was left open decides.
 
-use super::path::Motion;
-use super::scenario::Scenario;
-use crate::paper::comparison::Quantity;
+use super::path::Regime;
+use super::scenario::CoordinateScenario;
+use crate::paper::comparison::ErrorQuantity;
 use crate::paper::experiment::Experiment;
 use crate::paper::verdict::{DECISIVE, Verdict};
 use crate::statistics::Estimate;
@@ -36,12 +36,12 @@ impl Relative {
 
 /// The error of filter `a` less that of `b`, as a part of the latter, in each experiment, over the steps that are chosen.
 pub fn relative(
-    experiments: &[Experiment<Scenario>],
+    experiments: &[Experiment<CoordinateScenario>],
     [a, b]: [usize; 2],
-    quantity: Quantity,
-    chosen: fn(Motion) -> bool,
+    quantity: ErrorQuantity,
+    chosen: fn(Regime) -> bool,
 ) -> Vec<Relative> {
-    let of_experiment = |experiment: &Experiment<Scenario>| {
+    let of_experiment = |experiment: &Experiment<CoordinateScenario>| {
         let motions = &experiment.scenario.path.motions;
         let steps = |k: usize| chosen(motions[k]);
         let comparison = experiment.comparison();

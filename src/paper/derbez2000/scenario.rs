@@ -4,8 +4,8 @@
 //! its own, and the two know nothing of each other. What a run keeps of them is in the form of the other papers, errors of
 //! [x, ẋ, y, ẏ], so that the same statistics apply; the error of the acceleration is left out.
 
-use super::contestants::{Contestant, Coordinates, Setup};
-use super::path::{Motion, Path, Place, position_of};
+use super::contestants::{CoordinateFilters, CoordinateSetup, Coordinates};
+use super::path::{PlaneState, Regime, TruePath, position_of};
 use super::radar;
 use crate::imm::{Failure, Imm, Initial, Problem, Step};
 use crate::model::Conversion;
@@ -20,21 +20,21 @@ use std::time::{Duration, Instant};
 
 /// A scenario with every choice made.
 #[derive(Debug, Clone)]
-pub struct Scenario {
+pub struct CoordinateScenario {
     /// The choices that differ from the defaults.
     pub choices: Choices,
     /// The paper's number of runs.
     pub runs: usize,
     /// What the filters are told.
-    pub setup: Setup,
+    pub setup: CoordinateSetup,
     /// The truth.
-    pub path: Path,
+    pub path: TruePath,
     /// The variances of range and bearing, m² and rad².
     pub variances: [f64; 2],
     /// How range and bearing become positions, and whether their bias is taken out.
     pub conversion: Conversion,
     /// The filters.
-    pub contestants: Vec<Contestant>,
+    pub contestants: Vec<CoordinateFilters>,
 }
 
 /// One measurement.
@@ -46,11 +46,11 @@ pub struct Seen {
     pub position: Vector2<f64>,
 }
 
-impl Scenario {
+impl CoordinateScenario {
     /// Draws the measurements of one run: for each step the noise of the range, then that of the bearing.
     pub fn draw(&self, generator: &mut Generator) -> Vec<Seen> {
         let deviations = Vector2::from(self.variances.map(f64::sqrt));
-        let see = |place: &Place| {
+        let see = |place: &PlaneState| {
             let noise = deviations.map(|deviation| deviation * generator.standard_normal());
             let polar = radar::polar(position_of(place)) + noise;
             Seen {
@@ -68,12 +68,13 @@ impl Scenario {
 
     /// Whether a coordinate (0 for x, 1 for y) is accelerated in each step: what the constant acceleration model is right for.
     pub fn accelerates(&self, coordinate: usize) -> Vec<bool> {
-        let moves = |(motion, place): (&Motion, &Place)| *motion != Motion::Straight && place[coordinate][2] != 0.0;
+        let moves =
+            |(motion, place): (&Regime, &PlaneState)| *motion != Regime::Straight && place[coordinate][2] != 0.0;
         self.path.motions.iter().zip(&self.path.places).map(moves).collect()
     }
 }
 
-impl Simulation for Scenario {
+impl Simulation for CoordinateScenario {
     fn paper(&self) -> &'static str {
         "derbez2000"
     }
@@ -116,7 +117,7 @@ impl Simulation for Scenario {
     }
 
     fn filters(&self) -> Vec<Filter> {
-        let filter = |contestant: &Contestant| Filter {
+        let filter = |contestant: &CoordinateFilters| Filter {
             name: contestant.name.clone(),
             modes: mode_names(contestant),
             points: None,
@@ -140,7 +141,7 @@ impl Simulation for Scenario {
 }
 
 /// The names of the modes of both coordinates; one name for a filter of one mode, which has no probabilities to show.
-fn mode_names(contestant: &Contestant) -> Vec<String> {
+fn mode_names(contestant: &CoordinateFilters) -> Vec<String> {
     let axes = match contestant.coordinates {
         Coordinates::Cartesian => ["x", "y"],
         Coordinates::Polar => ["range", "bearing"],
@@ -156,9 +157,9 @@ fn mode_names(contestant: &Contestant) -> Vec<String> {
 }
 
 /// One contestant on one run's measurements, to its end or to the first step that cannot be computed.
-pub fn track(scenario: &Scenario, contestant: &Contestant, seen: &[Seen]) -> Run {
+pub fn track(scenario: &CoordinateScenario, contestant: &CoordinateFilters, seen: &[Seen]) -> Run {
     let mut run = Run::with_room_for(seen.len());
-    let mut keep = |steps: Steps, place: &Place| record(&mut run, contestant, steps, place);
+    let mut keep = |steps: Steps, place: &PlaneState| record(&mut run, contestant, steps, place);
     let (time, failure) = follow(scenario, contestant, seen, &mut keep);
     Run { failure, time, ..run }
 }
@@ -169,10 +170,10 @@ pub type Steps<'a> = [&'a Step<f64, U3, U1>; 2];
 /// One contestant on one run's measurements: `keep` is shown every step with the truth. The time spent in the filters' steps, and the
 /// step that could not be computed, if there was one.
 pub fn follow(
-    scenario: &Scenario,
-    contestant: &Contestant,
+    scenario: &CoordinateScenario,
+    contestant: &CoordinateFilters,
     seen: &[Seen],
-    keep: &mut dyn FnMut(Steps, &Place),
+    keep: &mut dyn FnMut(Steps, &PlaneState),
 ) -> (Duration, Option<Failure>) {
     let start = contestant.coordinates.of(&scenario.path.start);
     let mut filters = [0, 1].map(|c| {
@@ -197,7 +198,7 @@ pub fn follow(
 }
 
 /// The estimate at step 0: exact, with the contestant's variance.
-fn initial(contestant: &Contestant, state: Vector3<f64>) -> Initial<f64, U3> {
+fn initial(contestant: &CoordinateFilters, state: Vector3<f64>) -> Initial<f64, U3> {
     let estimate = crate::gaussian::Gaussian {
         mean: state,
         covariance: nalgebra::Matrix3::identity() * contestant.initial_variance,
@@ -213,14 +214,14 @@ fn initial(contestant: &Contestant, state: Vector3<f64>) -> Initial<f64, U3> {
 /// # Panics
 ///
 /// When the problem is not valid: the paper's problems are part of the program, and a test runs all of them.
-fn filter(contestant: &Contestant, problem: Problem<f64, U3, U1>, initial: &Initial<f64, U3>) -> Imm<f64, U3, U1> {
+fn filter(contestant: &CoordinateFilters, problem: Problem<f64, U3, U1>, initial: &Initial<f64, U3>) -> Imm<f64, U3, U1> {
     Imm::with_equations(problem, contestant.equations, initial).expect("the paper's problems are part of the program")
 }
 
 /// A step of both coordinates' filters.
 fn both_steps(
-    scenario: &Scenario,
-    contestant: &Contestant,
+    scenario: &CoordinateScenario,
+    contestant: &CoordinateFilters,
     filters: &mut [Imm<f64, U3, U1>; 2],
     seen: &Seen,
 ) -> Result<(), Failure> {
@@ -252,7 +253,7 @@ fn both_steps(
 }
 
 /// Keeps what the statistics need of a step of both coordinates.
-fn record(run: &mut Run, contestant: &Contestant, steps: Steps, place: &Place) {
+fn record(run: &mut Run, contestant: &CoordinateFilters, steps: Steps, place: &PlaneState) {
     let truth = contestant.coordinates.of(place);
     let estimate = contestant
         .coordinates

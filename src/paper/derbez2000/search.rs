@@ -5,43 +5,43 @@
 //! are to be met, so that a near miss would say little for the configuration; a distant one says that the table is not of this scenario.
 
 use super::arithmetic::published;
-use super::contestants::{Noise, Reading, Setup};
+use super::contestants::{CoordinateSetup, MeasurementNoise, Reading};
 use super::path::{self, Manoeuvres};
-use super::scenario::Scenario;
+use super::scenario::CoordinateScenario;
 use super::{DEGREE, INITIAL_VARIANCE, PHASES, assembled};
 use crate::model::Conversion;
 use crate::number::Real;
 use crate::paper::Effort;
-use crate::paper::comparison::{Comparison, Quantity};
+use crate::paper::comparison::{Comparison, ErrorQuantity};
 use crate::paper::monte_carlo::{Generator, Progress};
 use crate::paper::simulation::Run;
 use crate::paper::simulation::Simulation;
 use crate::paper::specification::{Choices, Specification};
-use crate::paper::verdict::{DECISIVE, Judgement, Verdict};
+use crate::paper::verdict::{DECISIVE, JudgedClaim, Verdict};
 use crate::statistics::Estimate;
 use crate::statistics::estimate::figure;
 use rayon::prelude::*;
 use std::fmt::Write;
 
 /// Errors of x and of y, of the three filters of the table.
-pub type Errors = [[Estimate; 3]; 2];
+pub type AxisErrors = [[Estimate; 3]; 2];
 
 /// A configuration of scenario 2.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Configuration {
+pub struct Candidate {
     /// The target.
     pub target: Manoeuvres,
     /// The filters.
-    pub setup: Setup,
+    pub setup: CoordinateSetup,
 }
 
 /// The nearest configuration that was found.
 #[derive(Debug, Clone, Copy)]
 pub struct Nearest {
     /// The configuration.
-    pub configuration: Configuration,
+    pub configuration: Candidate,
     /// Its errors over all runs.
-    pub errors: Errors,
+    pub errors: AxisErrors,
     /// The greatest of |ln(computed/published)|.
     pub distance: f64,
     /// How many configurations were tried.
@@ -63,7 +63,7 @@ const FIRST_STREAM: u64 = 1 << 40;
 
 /// A configuration that a longer search found near the table. It is a place to start from and nothing is taken from it on trust: its
 /// errors are computed like those of any other.
-const KNOWN: Configuration = Configuration {
+const KNOWN: Candidate = Candidate {
     target: Manoeuvres {
         start: [-0.367, 11.41],
         heading: 272.9 * DEGREE,
@@ -71,11 +71,11 @@ const KNOWN: Configuration = Configuration {
         acceleration: 0.5542,
         turn_rate: 0.946 * DEGREE,
     },
-    setup: Setup {
+    setup: CoordinateSetup {
         interval: 1.0,
         reading: Reading::Mixed,
         noise_variance: 1.16e-4,
-        noise: Noise::Constant(0.05),
+        noise: MeasurementNoise::Constant(0.05),
         initial_variance: INITIAL_VARIANCE,
     },
 };
@@ -90,17 +90,16 @@ pub fn nearest(
     let runs = effort.runs.unwrap_or(super::RUNS);
     let draws = DRAWS_A_RUN * runs;
     let steps = runs;
-    let few = |configuration: &Configuration, runs: usize| {
-        distance(&errors(configuration, runs.max(2), effort.seed), published)
-    };
+    let few =
+        |configuration: &Candidate, runs: usize| distance(&errors(configuration, runs.max(2), effort.seed), published);
     let stream = |number: usize| {
         let number = u64::try_from(number).unwrap_or(u64::MAX / 2);
         Generator::new(effort.seed, FIRST_STREAM + number)
     };
-    let mut drawn: Vec<(f64, Configuration)> = (0..draws)
+    let mut drawn: Vec<(f64, Candidate)> = (0..draws)
         .into_par_iter()
         .map(|number| {
-            let configuration = Configuration::drawn(noise_bounds, &mut stream(number));
+            let configuration = Candidate::drawn(noise_bounds, &mut stream(number));
             (few(&configuration, RUNS_OF_A_DRAW.min(runs)), configuration)
         })
         .collect();
@@ -110,7 +109,7 @@ pub fn nearest(
         drawn.push((0.0, KNOWN));
     }
     let tried = draws + drawn.len() * steps;
-    let descend = |(number, (_, start)): (usize, &(f64, Configuration))| {
+    let descend = |(number, (_, start)): (usize, &(f64, Candidate))| {
         let mut generator = stream(draws + number);
         let count = RUNS_OF_A_DESCENT.min(runs);
         let mut best = (few(start, count), *start);
@@ -127,7 +126,7 @@ pub fn nearest(
         progress();
         best
     };
-    let ends: Vec<(f64, Configuration)> = drawn.par_iter().enumerate().map(descend).collect();
+    let ends: Vec<(f64, Candidate)> = drawn.par_iter().enumerate().map(descend).collect();
     let (_, configuration) = ends.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
     let errors = errors(&configuration, runs, effort.seed);
     Some(Nearest {
@@ -140,7 +139,7 @@ pub fn nearest(
 }
 
 /// The greatest of |ln(computed/published)|; infinite where there is no answer.
-pub fn distance(errors: &Errors, published: &[[f64; 3]; 2]) -> f64 {
+pub fn distance(errors: &AxisErrors, published: &[[f64; 3]; 2]) -> f64 {
     let pairs = errors.iter().flatten().zip(published.iter().flatten());
     let distances = pairs.map(|(computed, published)| Real::ln(&(computed.value / published)).abs());
     distances.fold(0.0, |greatest, distance| {
@@ -153,7 +152,7 @@ pub fn distance(errors: &Errors, published: &[[f64; 3]; 2]) -> f64 {
 }
 
 /// The errors of a configuration.
-pub fn errors(configuration: &Configuration, runs: usize, seed: u64) -> Errors {
+pub fn errors(configuration: &Candidate, runs: usize, seed: u64) -> AxisErrors {
     let scenario = configuration.scenario();
     // One after the other: all cores are at work on other configurations.
     let runs: Vec<Vec<Run>> = (0..runs).map(|run| scenario.one_run(run, seed)).collect();
@@ -161,10 +160,10 @@ pub fn errors(configuration: &Configuration, runs: usize, seed: u64) -> Errors {
         scenario: &scenario,
         runs: &runs,
     };
-    [Quantity::X, Quantity::Y].map(|quantity| [0, 1, 2].map(|filter| comparison.error(filter, quantity)))
+    [ErrorQuantity::X, ErrorQuantity::Y].map(|quantity| [0, 1, 2].map(|filter| comparison.error(filter, quantity)))
 }
 
-impl Configuration {
+impl Candidate {
     /// A configuration drawn over decades.
     fn drawn(noise_bounds: [f64; 2], generator: &mut Generator) -> Self {
         let mut one_of = |choices: usize| {
@@ -177,10 +176,10 @@ impl Configuration {
         let interval = [1.0, 2.0][one_of(2)];
         let reading = [Reading::Mixed, Reading::Unmixed][one_of(2)];
         let noise = [
-            Noise::MeanOverThePath,
-            Noise::Constant(0.0025),
-            Noise::Constant(0.05),
-            Noise::Constant(0.5),
+            MeasurementNoise::MeanOverThePath,
+            MeasurementNoise::Constant(0.0025),
+            MeasurementNoise::Constant(0.05),
+            MeasurementNoise::Constant(0.5),
         ][one_of(4)];
         let (starts, turn) = (one_of(2), [-1.0, 1.0][one_of(2)]);
         let mut between = |low: f64, high: f64| low + (high - low) * generator.uniform();
@@ -196,7 +195,7 @@ impl Configuration {
                 acceleration: decades(between(-2.0, 1.3)),
                 turn_rate: turn * DEGREE * decades(between(-0.3, 1.2)),
             },
-            setup: Setup {
+            setup: CoordinateSetup {
                 interval,
                 reading,
                 noise_variance: Real::exp(&between(least, greatest)),
@@ -230,7 +229,7 @@ impl Configuration {
                 acceleration,
                 turn_rate,
             },
-            setup: Setup {
+            setup: CoordinateSetup {
                 noise_variance: noise_variance.clamp(noise_bounds[0], noise_bounds[1]),
                 ..self.setup
             },
@@ -238,7 +237,7 @@ impl Configuration {
     }
 
     /// The scenario of a configuration.
-    pub fn scenario(&self) -> Scenario {
+    pub fn scenario(&self) -> CoordinateScenario {
         let path = path::manoeuvres(&self.target, PHASES, self.setup.interval);
         assembled(Choices::default(), path, Conversion::Standard, &self.setup)
     }
@@ -248,7 +247,7 @@ impl Configuration {
 const NOISE_BOUNDS: [[f64; 2]; 2] = [[2.0, 40.0], [1e-4, 100.0]];
 
 /// The judge of table 1.
-pub fn table_1_reachable(s: &Specification, effort: Effort, progress: Progress) -> Judgement {
+pub fn table_1_reachable(s: &Specification, effort: Effort, progress: Progress) -> JudgedClaim {
     let published = published(s);
     let mut evidence = String::new();
     let mut verdict = Verdict::NotReproducible;

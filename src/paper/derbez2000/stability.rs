@@ -9,28 +9,28 @@ use super::instances::{
 };
 use crate::number::{Field, Rational, RationalFunction};
 use crate::paper::specification::Specification;
-use crate::paper::verdict::{Judgement, proven_by, refuted_by};
+use crate::paper::verdict::{JudgedClaim, proven_by, refuted_by};
 use crate::statistics::estimate::figure;
 use crate::steady::certificate::{Product, Quadratics};
 use crate::steady::map::Map;
 use crate::steady::pair::{acceleration_matrix, frozen_matrix, remark_1_matrix, velocity_matrix};
-use crate::steady::polynomial::{Rows, characteristic_polynomial, has_radius_below, rows_of};
+use crate::steady::polynomial::{MatrixRows, characteristic_polynomial, has_radius_below, rows_of};
 use crate::steady::reach::{polynomial_text, unseen_part};
 use crate::steady::riccati::SteadyState;
 use crate::steady::simulated::NotSimulated;
-use crate::steady::verdict::{Depth, Filters, Verdict as Joint, rows_text, word_text};
+use crate::steady::verdict::{Depth, Filters, StabilityVerdict as Joint, rows_text, word_text};
 use nalgebra::{Matrix1, Matrix2, SMatrix};
 use std::fmt::Write;
 
 /// Points a side of the map in the ledger, and its decades of the tracking indices.
 const MAP: (usize, [f64; 2]) = (25, [-3.0, 3.0]);
 
-fn is_stable(matrix: &Rows<Rational>) -> bool {
+fn is_stable(matrix: &MatrixRows<Rational>) -> bool {
     has_radius_below(matrix, &Rational::new(1, 1)) == Some(true)
 }
 
 /// The theorem on bounded mixed covariances.
-pub fn theorem(s: &Specification) -> Judgement {
+pub fn theorem(s: &Specification) -> JudgedClaim {
     let models = growing_mixture::<Rational>();
     let mut meets = true;
     for model in &models {
@@ -86,7 +86,7 @@ fn run_growing(steps: u32) -> Result<(f64, f64), NotSimulated> {
 }
 
 /// Remark 1: the averaged matrices.
-pub fn stability_matrices(s: &Specification, map: &Map) -> Judgement {
+pub fn stability_matrices(s: &Specification, map: &Map) -> JudgedClaim {
     let criteria = |mixing: [[Rational; 2]; 2], c: i64| {
         let n = |value: i64| Rational::integer(value);
         let matrices = [
@@ -135,7 +135,7 @@ fn unstable_pair() -> (Filters, Product) {
 }
 
 /// Remark 1: one norm for all.
-pub fn prior_data_discounted(s: &Specification) -> Judgement {
+pub fn prior_data_discounted(s: &Specification) -> JudgedClaim {
     let (filters, product) = unstable_pair();
     let grows = filters.check_unstable(&product).is_ok();
     let matrices = [
@@ -154,7 +154,7 @@ pub fn prior_data_discounted(s: &Specification) -> Judgement {
 }
 
 /// The sentence of section 5, literally.
-pub fn convex_combination(s: &Specification) -> Judgement {
+pub fn convex_combination(s: &Specification) -> JudgedClaim {
     let n = |value: i64| Rational::new(value, 2);
     let a = Matrix2::new(n(1), n(20), n(0), n(1));
     let mean = remark_1_matrix(&[n(1), n(1)], &[a.clone(), a.transpose()]);
@@ -169,7 +169,7 @@ pub fn convex_combination(s: &Specification) -> Judgement {
 }
 
 /// The un-mixed reading, for all noises.
-pub fn stable_unmixed(s: &Specification) -> Judgement {
+pub fn stable_unmixed(s: &Specification) -> JudgedClaim {
     let root = RationalFunction::unknown("theta");
     let at = |coefficients: &[RationalFunction], sign: i64| {
         let mut sum = RationalFunction::integer(0);
@@ -199,7 +199,7 @@ pub fn stable_unmixed(s: &Specification) -> Judgement {
 }
 
 /// The mixed reading at the paper's noises.
-pub fn stable_mixed(s: &Specification) -> Judgement {
+pub fn stable_mixed(s: &Specification) -> JudgedClaim {
     let mut evidence = String::from(
         "Common quadratic forms P, in coordinates scaled by diag(1, t, t²), with P − AᵀPA ≻ 0 for both filters, checked on proven enclosures of the \
          gains; q = 5:",
@@ -252,7 +252,7 @@ pub fn map() -> Map {
 }
 
 /// The mixed reading at unequal noises.
-pub fn stable_mixed_unequal_noises(s: &Specification, map: &Map) -> Judgement {
+pub fn stable_mixed_unequal_noises(s: &Specification, map: &Map) -> JudgedClaim {
     let [stable, unstable, undecided] = map.counts();
     let figure_2 = ["2", "10", "40"].map(|q| {
         let is_certified = ["1", "2"]
@@ -297,7 +297,7 @@ pub fn stable_mixed_unequal_noises(s: &Specification, map: &Map) -> Judgement {
 }
 
 /// Eigenvalues outside the unit circle in the full IMM filter.
-pub fn local_instability(s: &Specification) -> Judgement {
+pub fn local_instability(s: &Specification) -> JudgedClaim {
     let bound = Rational::new(6, 5);
     let (found, gain) = match gain_after_a_jump() {
         Ok(gain) => {

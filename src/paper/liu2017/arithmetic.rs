@@ -4,7 +4,7 @@
 
 use crate::number::Rational;
 use crate::paper::specification::Specification;
-use crate::paper::verdict::{Judgement, proven_if};
+use crate::paper::verdict::{JudgedClaim, proven_if};
 use crate::rule::moment::exactness;
 use crate::rule::sphere::{every_dimension, on_simplex};
 use crate::rule::{RuleName, simplex};
@@ -28,7 +28,7 @@ fn table_2<'a>(s: &'a Specification, name: &str) -> &'a [f64] {
 }
 
 /// The points of the four rules, counted.
-pub fn point_counts(s: &Specification) -> Judgement {
+pub fn point_counts(s: &Specification) -> JudgedClaim {
     let counted = counted_points();
     let published = table_2(s, "Number of Points");
     let counted_as_published: Vec<f64> = counted.iter().map(|points| *points as f64).collect();
@@ -38,7 +38,7 @@ pub fn point_counts(s: &Specification) -> Judgement {
 }
 
 /// The published times over the published numbers of points.
-pub fn time_proportional_to_points(s: &Specification) -> Judgement {
+pub fn time_proportional_to_points(s: &Specification) -> JudgedClaim {
     let (points, times) = (table_2(s, "Number of Points"), table_2(s, "Computational Time"));
     let per_point: Vec<f64> = times.iter().zip(points).map(|(time, points)| time / points).collect();
     let count = points.len() as f64;
@@ -65,7 +65,7 @@ pub fn time_proportional_to_points(s: &Specification) -> Judgement {
 }
 
 /// Points and published times of the two fifth-degree filters.
-pub fn slightly_cheaper(s: &Specification) -> Judgement {
+pub fn slightly_cheaper(s: &Specification) -> JudgedClaim {
     let fewer: Vec<usize> = (2..=10).filter(|&n| n * n + 3 * n + 3 < 2 * n * n + 1).collect();
     let [_, _, fifth, simplex] = counted_points();
     let times = table_2(s, "Computational Time");
@@ -83,7 +83,7 @@ pub fn slightly_cheaper(s: &Specification) -> Judgement {
 }
 
 /// The degree of the simplex rule, for every dimension.
-pub fn degree_five(s: &Specification) -> Judgement {
+pub fn degree_five(s: &Specification) -> JudgedClaim {
     let n = every_dimension();
     let degree = on_simplex(&n, &simplex::edge_weight(&n)).degree();
     let failure = simplex::simplex(4).ok().and_then(|rule| exactness(&rule, 6).failure);
@@ -96,7 +96,7 @@ pub fn degree_five(s: &Specification) -> Judgement {
 }
 
 /// The points of the two fifth-degree rules by dimension.
-pub fn cheaper_in_high_dimension(s: &Specification) -> Judgement {
+pub fn cheaper_in_high_dimension(s: &Specification) -> JudgedClaim {
     let ratio = |n: i64| Rational::new(n * n + 3 * n + 3, 2 * n * n + 1);
     let ratios: Vec<String> = [4, 8, 16, 64, 1024]
         .into_iter()

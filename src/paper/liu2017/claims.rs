@@ -10,13 +10,13 @@ use crate::imm::{Equations, Problem};
 use crate::model::Conversion;
 use crate::number::{Field, Rational, RationalFunction, Surd};
 use crate::paper::Effort;
-use crate::paper::comparison::Quantity;
+use crate::paper::comparison::ErrorQuantity;
 use crate::paper::experiment::Experiment;
 use crate::paper::monte_carlo::{Progress, run};
 use crate::paper::scenario::{Contestant, Motion, Scenario};
 use crate::paper::specification::{Choices, InvalidChoice, Specification, liu2017 as specification};
 use crate::paper::verdict::{
-    DECISIVE, Judgement, RELEVANT, Verdict, all_of, better_by_a_thousandth, confirmed_if, in_words,
+    DECISIVE, JudgedClaim, RELEVANT, Verdict, all_of, better_by_a_thousandth, confirmed_if, in_words,
     is_within_a_thousandth, proven_if, refuted_by,
 };
 use crate::rule::moment::{gaussian_moment, rule_moment};
@@ -40,7 +40,7 @@ const OTHERS: [usize; 3] = [IMMUKF, IMMCKF, IMM5THCKF];
 /// # Errors
 ///
 /// [`InvalidChoice`] when the specification lacks an alternative that a judge asks for.
-pub fn judge(effort: Effort, progress: Progress) -> Result<Vec<Judgement>, InvalidChoice> {
+pub fn judge(effort: Effort, progress: Progress) -> Result<Vec<JudgedClaim>, InvalidChoice> {
     let printed = Experiment::new(scenario(&Choices::default())?, effort, progress);
     let s = specification();
     Ok(vec![
@@ -66,7 +66,7 @@ pub fn judge(effort: Effort, progress: Progress) -> Result<Vec<Judgement>, Inval
 /// The verdict on "IMM5thSSRCKF is better than all others" over some steps, with the differences in words.
 fn better_than_others(
     printed: &Experiment,
-    quantities: &[Quantity],
+    quantities: &[ErrorQuantity],
     chosen: &dyn Fn(usize) -> bool,
 ) -> (Verdict, String) {
     let comparison = printed.comparison();
@@ -75,7 +75,11 @@ fn better_than_others(
     for other in OTHERS {
         let _ = write!(evidence, " {}:", printed.scenario.contestants[other].name);
         for &quantity in quantities {
-            let unit = if quantity == Quantity::Velocity { "m/s" } else { "m" };
+            let unit = if quantity == ErrorQuantity::Velocity {
+                "m/s"
+            } else {
+                "m"
+            };
             let difference = comparison.difference_over(IMM5THSSRCKF, other, quantity, chosen);
             let error = comparison.error_over(other, quantity, chosen);
             verdicts.push(better_by_a_thousandth(difference, error));
@@ -87,8 +91,8 @@ fn better_than_others(
 }
 
 /// The errors of the proposed filter beside all others.
-pub fn better_accuracy(s: &Specification, printed: &Experiment) -> Judgement {
-    let quantities = [Quantity::Position, Quantity::Velocity];
+pub fn better_accuracy(s: &Specification, printed: &Experiment) -> JudgedClaim {
+    let quantities = [ErrorQuantity::Position, ErrorQuantity::Velocity];
     let (verdict, mut evidence) = better_than_others(printed, &quantities, &|_| true);
     let rows = s.tables[0].rows.iter();
     let published: Vec<String> = rows
@@ -114,7 +118,7 @@ fn different_delays(printed: &Experiment, a: usize, b: usize) -> (usize, usize) 
 }
 
 /// Its delays beside all others.
-pub fn quicker_switching(s: &Specification, printed: &Experiment) -> Judgement {
+pub fn quicker_switching(s: &Specification, printed: &Experiment) -> JudgedClaim {
     let own = mean_delay(printed, IMM5THSSRCKF);
     let mut evidence = format!("Mean delay of IMM5thSSRCKF {own:.3} s;");
     let mut quicker = true;
@@ -147,7 +151,7 @@ fn end_sentence(evidence: &mut String) {
 }
 
 /// The delays of both fifth-degree filters beside the others.
-pub fn fifth_degree_switching(s: &Specification, printed: &Experiment) -> Judgement {
+pub fn fifth_degree_switching(s: &Specification, printed: &Experiment) -> JudgedClaim {
     let comparison = printed.comparison();
     let delays = [IMMUKF, IMMCKF, IMM5THCKF, IMM5THSSRCKF].map(|c| mean_delay(printed, c));
     let among = comparison.greatest_probability_difference(IMM5THCKF, IMM5THSSRCKF);
@@ -166,14 +170,14 @@ pub fn fifth_degree_switching(s: &Specification, printed: &Experiment) -> Judgem
 }
 
 /// Whether any run fails or goes far off.
-pub fn no_divergence(s: &Specification, printed: &Experiment) -> Judgement {
+pub fn no_divergence(s: &Specification, printed: &Experiment) -> JudgedClaim {
     // Diverged: further away than ten times the widest deviation of a measured position, 39.4 km · 7 mrad.
     let (bounded, evidence) = printed.stays_within(10.0 * 39_400.0 * BEARING_DEVIATION);
     s.judgement("liu2017-no-divergence", confirmed_if(bounded), evidence)
 }
 
 /// The two fifth-degree rules beside each other, by moments and in the scenario.
-pub fn higher_accuracy_than_fifth_degree(s: &Specification, printed: &Experiment) -> Judgement {
+pub fn higher_accuracy_than_fifth_degree(s: &Specification, printed: &Experiment) -> JudgedClaim {
     let monomials = [
         [6, 0, 0, 0],
         [0, 0, 0, 6],
@@ -197,8 +201,8 @@ pub fn higher_accuracy_than_fifth_degree(s: &Specification, printed: &Experiment
         }
     }
     let comparison = printed.comparison();
-    let difference = comparison.difference(IMM5THSSRCKF, IMM5THCKF, Quantity::Position);
-    let error = comparison.error(IMM5THCKF, Quantity::Position);
+    let difference = comparison.difference(IMM5THSSRCKF, IMM5THCKF, ErrorQuantity::Position);
+    let error = comparison.error(IMM5THCKF, ErrorQuantity::Position);
     let _ = write!(
         evidence,
         " the simplex rule is closer in {closer} of them and farther in {farther}. In the scenario IMM5thSSRCKF minus IMM5thCKF is {}.",
@@ -222,7 +226,7 @@ fn with_converted_measurements(contestant: &Contestant) -> Contestant {
     }
 }
 
-fn linear_imm_cannot(s: &Specification, printed: &Experiment, effort: Effort, progress: Progress) -> Judgement {
+fn linear_imm_cannot(s: &Specification, printed: &Experiment, effort: Effort, progress: Progress) -> JudgedClaim {
     let proposed = &printed.scenario.contestants[IMM5THSSRCKF];
     let both = Scenario {
         contestants: vec![proposed.clone(), with_converted_measurements(proposed)],
@@ -230,8 +234,8 @@ fn linear_imm_cannot(s: &Specification, printed: &Experiment, effort: Effort, pr
     };
     let both = Experiment::new(both, effort, progress);
     let (comparison, failed) = (both.comparison(), both.failures(1));
-    let difference = comparison.difference(1, 0, Quantity::Position);
-    let error = comparison.error(0, Quantity::Position);
+    let difference = comparison.difference(1, 0, ErrorQuantity::Position);
+    let error = comparison.error(0, ErrorQuantity::Position);
     let relative = difference.value / error.value;
     let evidence = format!(
         "Kalman filters on measurements converted to positions, with the same modes, chain and noise: position error minus that of \
@@ -245,10 +249,10 @@ fn linear_imm_cannot(s: &Specification, printed: &Experiment, effort: Effort, pr
 }
 
 /// The errors of the proposed filter beside all others, in the turns.
-pub fn outperforms_in_manoeuvres(s: &Specification, printed: &Experiment) -> Judgement {
+pub fn outperforms_in_manoeuvres(s: &Specification, printed: &Experiment) -> JudgedClaim {
     let schedule = &printed.scenario.schedule;
     let turning = |k: usize| schedule[k] != Motion::Straight;
-    let (verdict, mut evidence) = better_than_others(printed, &[Quantity::Position], &turning);
+    let (verdict, mut evidence) = better_than_others(printed, &[ErrorQuantity::Position], &turning);
     end_sentence(&mut evidence);
     s.judgement(
         "liu2017-outperforms-in-manoeuvres",
@@ -258,16 +262,16 @@ pub fn outperforms_in_manoeuvres(s: &Specification, printed: &Experiment) -> Jud
 }
 
 /// The same on straight parts.
-pub fn constant_velocity(s: &Specification, printed: &Experiment) -> Judgement {
+pub fn constant_velocity(s: &Specification, printed: &Experiment) -> JudgedClaim {
     let schedule = &printed.scenario.schedule;
     let straight = |k: usize| schedule[k] == Motion::Straight;
     let comparison = printed.comparison();
     let same = OTHERS.iter().all(|&other| {
-        let difference = comparison.difference_over(IMM5THSSRCKF, other, Quantity::Position, &straight);
-        let error = comparison.error_over(other, Quantity::Position, &straight);
+        let difference = comparison.difference_over(IMM5THSSRCKF, other, ErrorQuantity::Position, &straight);
+        let error = comparison.error_over(other, ErrorQuantity::Position, &straight);
         is_within_a_thousandth(difference, error)
     });
-    let (_, mut evidence) = better_than_others(printed, &[Quantity::Position], &straight);
+    let (_, mut evidence) = better_than_others(printed, &[ErrorQuantity::Position], &straight);
     end_sentence(&mut evidence);
     let verdict = confirmed_if(same);
     let which = if same {
@@ -283,7 +287,7 @@ pub fn constant_velocity(s: &Specification, printed: &Experiment) -> Judgement {
 }
 
 /// The range of the filters' overall errors in a quantity.
-fn range(experiment: &Experiment, quantity: Quantity) -> f64 {
+fn range(experiment: &Experiment, quantity: ErrorQuantity) -> f64 {
     let comparison = experiment.comparison();
     let errors: Vec<f64> = (0..experiment.scenario.contestants.len())
         .map(|c| comparison.error(c, quantity).value)
@@ -300,7 +304,7 @@ fn table_1_gaps(
     printed: &Experiment,
     effort: Effort,
     progress: Progress,
-) -> Result<Judgement, InvalidChoice> {
+) -> Result<JudgedClaim, InvalidChoice> {
     let mut experiments = Vec::new();
     for choices in s.single_alternatives() {
         // Unpaired runs are what sampling does, not what the filters do; they have a figure of their own below.
@@ -375,7 +379,7 @@ fn likelihood_exponent_effect(
     s: &Specification,
     effort: Effort,
     progress: Progress,
-) -> Result<Judgement, InvalidChoice> {
+) -> Result<JudgedClaim, InvalidChoice> {
     let mut both = scenario(&Choices::default())?;
     let as_printed = both.contestants.iter().map(|contestant| Contestant {
         name: format!("{} as printed", contestant.name),
@@ -396,9 +400,9 @@ fn likelihood_exponent_effect(
         "Not the density: |2πS| carries n_z already, and the printed exponent squares the determinant when n_z = 2. IMM5thSSRCKF with it, \
          minus without: position in the turns {}, on straight parts {}, velocity over all {}; mode probabilities up to {} apart; mean delay \
          {:.2} s for {:.2} s. Smaller errors here do not make it a density.",
-        in_words(over(&turning, Quantity::Position), "m"),
-        in_words(over(&straight, Quantity::Position), "m"),
-        in_words(over(&|_| true, Quantity::Velocity), "m/s"),
+        in_words(over(&turning, ErrorQuantity::Position), "m"),
+        in_words(over(&straight, ErrorQuantity::Position), "m"),
+        in_words(over(&|_| true, ErrorQuantity::Velocity), "m/s"),
         figure(comparison.greatest_probability_difference(printed, corrected)),
         mean_delay(&both, printed),
         mean_delay(&both, corrected),
@@ -407,7 +411,7 @@ fn likelihood_exponent_effect(
     Ok(s.judgement("liu2017-likelihood-exponent-effect", refuted_by(changes), evidence))
 }
 
-fn printed_weights(s: &Specification, printed: &Experiment) -> Judgement {
+fn printed_weights(s: &Specification, printed: &Experiment) -> JudgedClaim {
     let mut evidence = String::from("Exact sums of the weights at n = 4, and the track of a filter with them:");
     let mut possible = false;
     for (number, name) in [(11, RuleName::SimplexPrinted11), (16, RuleName::SimplexPrinted16)] {
@@ -427,7 +431,7 @@ fn printed_weights(s: &Specification, printed: &Experiment) -> Judgement {
         let errors = &runs[0][0].errors;
         let first = errors
             .first()
-            .map_or(f64::NAN, |e| Quantity::Position.squared(e).sqrt());
+            .map_or(f64::NAN, |e| ErrorQuantity::Position.squared(e).sqrt());
         let end = runs[0][0]
             .failure
             .as_ref()

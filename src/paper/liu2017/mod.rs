@@ -38,7 +38,7 @@
 pub mod arithmetic;
 pub mod claims;
 
-use super::comparison::Quantity;
+use super::comparison::ErrorQuantity;
 use super::scenario::{Contestant, Motion, Scenario};
 use super::simulation::Average;
 use super::specification::{Choices, InvalidChoice, liu2017 as specification};
@@ -258,10 +258,10 @@ fn truth_noise_root() -> Matrix4<f64> {
 }
 
 /// The quantity of a row of the paper's table 1; none for the rows of table 2.
-pub fn quantity_of_row(name: &str) -> Option<Quantity> {
+pub fn quantity_of_row(name: &str) -> Option<ErrorQuantity> {
     match name {
-        "Position ARMSE" => Some(Quantity::Position),
-        "Velocity ARMSE" => Some(Quantity::Velocity),
+        "Position ARMSE" => Some(ErrorQuantity::Position),
+        "Velocity ARMSE" => Some(ErrorQuantity::Velocity),
         _ => None,
     }
 }

@@ -68,7 +68,7 @@ pub enum Bearings {
 
 /// What the filters are told.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Setup {
+pub struct RadarSetup {
     /// q of both modes, m²/s³ and m²/s⁵.
     pub noise_density: f64,
     /// σ_r and σ_θ, m and rad.
@@ -87,7 +87,7 @@ pub struct Setup {
 
 /// A filter of the comparison.
 #[derive(Debug, Clone)]
-pub struct Contestant {
+pub struct RadarFilter {
     /// The paper's name for it.
     pub name: &'static str,
     /// Its modes, chain, measurement and rule.
@@ -101,14 +101,14 @@ pub struct Contestant {
 /// What a measured range and bearing are of: the entries x and y of the state.
 const POSITION: [usize; 2] = [0, 1];
 
-impl Setup {
+impl RadarSetup {
     /// IMM-CMKF.
-    pub fn converted(&self) -> Contestant {
+    pub fn converted(&self) -> RadarFilter {
         let equations = match self.converted_at {
             ConvertedAt::Measurement => Equations::standard(),
             ConvertedAt::Prediction => Equations::standard().with_conversion_at_prediction(),
         };
-        Contestant {
+        RadarFilter {
             name: "IMM-CMKF",
             problem: self.problem(Filter::converted(self.conversion)),
             equations: self.mixed(&equations),
@@ -121,7 +121,7 @@ impl Setup {
     /// # Panics
     ///
     /// When the rule's parameters have no rule; they are part of the program.
-    pub fn unscented(&self, bearings: Bearings) -> Contestant {
+    pub fn unscented(&self, bearings: Bearings) -> RadarFilter {
         let [alpha, beta, kappa] = &self.unscented;
         let rule = unscented_in(U6, alpha, beta, kappa).expect("the parameters are part of the program");
         let effective = rule.weights.iter().filter(|weight| **weight != 0.0).count();
@@ -130,7 +130,7 @@ impl Setup {
             Bearings::Wrapped => Equations::standard(),
             Bearings::Plain => Equations::standard().with_plain_bearings(),
         };
-        Contestant {
+        RadarFilter {
             name: match bearings {
                 Bearings::Wrapped => "IMM-UKF",
                 Bearings::Plain => "IMM-UKF, never wrapped",

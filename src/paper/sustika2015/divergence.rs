@@ -6,7 +6,7 @@
 //! runs whose measured bearing jumps.
 
 use super::scenario;
-use super::sweep::{Point, point};
+use super::sweep::{SweepPoint, point};
 use crate::paper::monte_carlo::Progress;
 use crate::paper::specification::{Choices, InvalidChoice};
 use serde::Serialize;
@@ -24,13 +24,13 @@ pub const SIMULATIONS: [(&str, &str); 4] = [
 
 /// One simulation with all three filters.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Row {
+pub struct DivergenceRow {
     /// The scenario.
     pub scenario: &'static str,
     /// When the manoeuvres are.
     pub window: &'static str,
     /// What its runs show.
-    pub point: Point,
+    pub point: SweepPoint,
 }
 
 /// Runs the simulations.
@@ -38,10 +38,10 @@ pub struct Row {
 /// # Errors
 ///
 /// [`InvalidChoice`] never, unless the specification and this file disagree about the names.
-pub fn rows(runs: usize, seed: u64, progress: Progress) -> Result<Vec<Row>, InvalidChoice> {
+pub fn rows(runs: usize, seed: u64, progress: Progress) -> Result<Vec<DivergenceRow>, InvalidChoice> {
     let row = |&(name, window): &(&'static str, &'static str)| {
         let choices = Choices::of("scenario", name).with("window", window);
-        Ok(Row {
+        Ok(DivergenceRow {
             scenario: name,
             window,
             point: point(&scenario(&choices)?, runs, seed, progress),
@@ -52,7 +52,7 @@ pub fn rows(runs: usize, seed: u64, progress: Progress) -> Result<Vec<Row>, Inva
 
 /// Runs of several settings together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub struct Tally {
+pub struct Divergences {
     /// All runs.
     pub runs: usize,
     /// The divergent ones, of each filter of the sweep.
@@ -61,9 +61,9 @@ pub struct Tally {
     pub divergent_with_jump: [usize; 3],
 }
 
-impl Tally {
+impl Divergences {
     /// The sums over points of so many runs each.
-    pub fn of<'a>(points: impl Iterator<Item = &'a Point>, runs: usize) -> Self {
+    pub fn of<'a>(points: impl Iterator<Item = &'a SweepPoint>, runs: usize) -> Self {
         let mut tally = Self {
             runs: 0,
             divergent: [0; 3],

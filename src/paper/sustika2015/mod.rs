@@ -48,9 +48,9 @@ pub mod truth;
 use super::specification::{Choices, InvalidChoice, sustika2015 as specification};
 use crate::model::conversion::Conversion;
 use crate::statistics::fit_error::FitForm;
-use contestants::{Bearings, ConvertedAt, InitialCovariance, Mixing, Setup};
-use scenario::{FirstMeasurement, Scenario};
-use truth::{Noise, Trajectory};
+use contestants::{Bearings, ConvertedAt, InitialCovariance, Mixing, RadarSetup};
+use scenario::{FirstMeasurement, RadarScenario};
+use truth::{Trajectory, TruthNoise};
 
 /// T, s: "sampling interval on simulation is 1 second".
 pub const INTERVAL: f64 = 1.0;
@@ -156,7 +156,7 @@ pub const TOOLBOX_SECONDS: [[usize; 2]; 2] = [[51, 70], [121, 150]];
 /// # Errors
 ///
 /// [`InvalidChoice`] for a parameter or an alternative that the paper's simulations do not have.
-pub fn scenario(choices: &Choices) -> Result<Scenario, InvalidChoice> {
+pub fn scenario(choices: &Choices) -> Result<RadarScenario, InvalidChoice> {
     let specification = specification();
     specification.check(choices)?;
     let chosen = |parameter| specification.chosen(choices, parameter);
@@ -168,12 +168,12 @@ pub fn scenario(choices: &Choices) -> Result<Scenario, InvalidChoice> {
         "never" => Bearings::Plain,
         _ => Bearings::Wrapped,
     };
-    let setup = Setup {
+    let setup = RadarSetup {
         noise_density,
         deviations,
         ..setup(choices)?
     };
-    Ok(Scenario {
+    Ok(RadarScenario {
         choices: choices.clone(),
         trajectory: trajectory(choices)?,
         first_measurement: match chosen("first-measurement")? {
@@ -196,9 +196,9 @@ pub fn scenario(choices: &Choices) -> Result<Scenario, InvalidChoice> {
 fn trajectory(choices: &Choices) -> Result<Trajectory, InvalidChoice> {
     let chosen = |parameter| specification().chosen(choices, parameter);
     let noise = match chosen("truth")? {
-        "one-trajectory" => Noise::OneTrajectory,
-        "noise-free" => Noise::Free,
-        _ => Noise::EachRun,
+        "one-trajectory" => TruthNoise::OneTrajectory,
+        "noise-free" => TruthNoise::Free,
+        _ => TruthNoise::EachRun,
     };
     let manoeuvres: &[[usize; 2]] = match (chosen("scenario")?, chosen("window")?) {
         ("matched-manoeuvring" | "mismatched-manoeuvring", "printed") => &MANOEUVRING_SECONDS,
@@ -210,9 +210,9 @@ fn trajectory(choices: &Choices) -> Result<Trajectory, InvalidChoice> {
 }
 
 /// What the filters are told under the given choices, in scenario 1.
-fn setup(choices: &Choices) -> Result<Setup, InvalidChoice> {
+fn setup(choices: &Choices) -> Result<RadarSetup, InvalidChoice> {
     let chosen = |parameter| specification().chosen(choices, parameter);
-    Ok(Setup {
+    Ok(RadarSetup {
         noise_density: NOISE_DENSITY,
         deviations: MEASUREMENT_DEVIATIONS,
         initial: match chosen("initial-covariance")? {

@@ -4,9 +4,9 @@
 //! fit errors and about divergence can be answered. All three filters see the same truth and the same measurements.
 
 use super::contestants::Bearings;
-use super::scenario::Scenario;
-use super::truth::{Draw, Motion, bearing_jumps};
-use crate::paper::comparison::Quantity;
+use super::scenario::RadarScenario;
+use super::truth::{Manoeuvre, RadarDraw, bearing_jumps};
+use crate::paper::comparison::ErrorQuantity;
 use crate::paper::monte_carlo::Progress;
 use crate::paper::simulation::Run;
 use crate::paper::simulation::Simulation;
@@ -26,7 +26,7 @@ pub struct Track {
 
 /// What one run shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Outcome {
+pub struct RunOutcome {
     /// Whether two measured bearings that follow each other differ by more than π.
     pub jumps: bool,
     /// The least angle between a measured bearing and the negative x-axis, rad.
@@ -37,7 +37,7 @@ pub struct Outcome {
     pub apart: f64,
 }
 
-impl Outcome {
+impl RunOutcome {
     /// The percentage fit error of a filter.
     pub fn fit(&self, form: FitForm, filter: usize) -> Option<f64> {
         let place = FitForm::ALL.iter().position(|other| *other == form)?;
@@ -46,7 +46,7 @@ impl Outcome {
 }
 
 /// The outcomes of a scenario, of all its runs.
-pub fn outcomes(scenario: &Scenario, runs: usize, seed: u64, progress: Progress) -> Vec<Outcome> {
+pub fn outcomes(scenario: &RadarScenario, runs: usize, seed: u64, progress: Progress) -> Vec<RunOutcome> {
     let setup = &scenario.setup;
     let contestants = [
         setup.converted(),
@@ -66,11 +66,11 @@ pub fn outcomes(scenario: &Scenario, runs: usize, seed: u64, progress: Progress)
         .collect()
 }
 
-fn outcome(scenario: &Scenario, draw: &Draw, runs: &[Run; 3]) -> Outcome {
+fn outcome(scenario: &RadarScenario, draw: &RadarDraw, runs: &[Run; 3]) -> RunOutcome {
     let manoeuvres: Vec<bool> = scenario
         .motions()
         .into_iter()
-        .map(|motion| motion == Motion::Manoeuvre.name())
+        .map(|motion| motion == Manoeuvre::Manoeuvre.name())
         .collect();
     let track = |run: &Run| {
         Some(Track {
@@ -80,12 +80,12 @@ fn outcome(scenario: &Scenario, draw: &Draw, runs: &[Run; 3]) -> Outcome {
     };
     let [_, wrapped, plain] = runs;
     let between = wrapped.errors.iter().zip(&plain.errors);
-    Outcome {
+    RunOutcome {
         jumps: bearing_jumps(&draw.measurements) > 0,
         to_cut: draw.measurements.iter().map(|z| PI - z[1].abs()).fold(PI, f64::min),
         filters: runs.each_ref().map(track),
         apart: between
-            .map(|(a, b)| Quantity::Position.squared(&(a - b)).sqrt())
+            .map(|(a, b)| ErrorQuantity::Position.squared(&(a - b)).sqrt())
             .fold(0.0, f64::max),
     }
 }
@@ -95,7 +95,7 @@ fn mean_square(run: &Run, manoeuvres: &[bool], kind: bool) -> f64 {
     let steps = run.errors.iter().zip(manoeuvres);
     let squares: Vec<f64> = steps
         .filter(|(_, manoeuvre)| **manoeuvre == kind)
-        .map(|(error, _)| Quantity::Position.squared(error))
+        .map(|(error, _)| ErrorQuantity::Position.squared(error))
         .collect();
     squares.iter().sum::<f64>() / squares.len() as f64
 }

@@ -9,7 +9,7 @@ use crate::model::{PolarComponent, Sensor};
 use crate::number::{Dual, Enclosure, Field, Rational, RationalFunction, Real};
 use crate::paper::operations::{CoastalRadar, Sums};
 use crate::paper::specification::{Specification, sustika2015 as specification};
-use crate::paper::verdict::{Judgement, proven_by, proven_if, refuted_by};
+use crate::paper::verdict::{JudgedClaim, proven_by, proven_if, refuted_by};
 use crate::rule::moment::wrong_moment_of_degree;
 use crate::rule::unscented::{Parameters, unscented};
 use crate::rule::{ExactRule, Rule};
@@ -84,7 +84,7 @@ pub fn vanishes(value: &Enclosure) -> bool {
 }
 
 /// "the calculating of the Jacobian matrix is always a very difficult and error-prone process".
-pub fn difficult_jacobian() -> Judgement {
+pub fn difficult_jacobian() -> JudgedClaim {
     let agree_at = |[x, y]: &[f64; 2]| {
         let (x, y) = (Enclosure::exact(*x), Enclosure::exact(*y));
         let difference = jacobian(&at(&x, &y)) - closed_jacobian(&x, &y);
@@ -134,7 +134,7 @@ pub fn signs_of_linearity(measurement: &Sensor<Enclosure, U6, U2>) -> [Option<bo
 }
 
 /// "Kalman filter can't be used without modification because Kalman filter only work on linear system".
-pub fn kalman_needs_modification() -> Judgement {
+pub fn kalman_needs_modification() -> JudgedClaim {
     let [here, opposite, nowhere, _] = Enclosure::with_precision(BITS, || on_a_line(&polar()));
     let signs = signs_of_linearity(&polar());
     let [_, _, bearing_doubles] = signs;
@@ -179,7 +179,7 @@ pub fn keeps_both_moments<const N: usize>(rule: &ExactRule) -> bool {
 const GREATEST_DEGREE: usize = 5;
 
 /// "sigma points, which capture the desired moments (mean and covariance) of distribution of a variable exactly".
-pub fn exact_moments() -> Judgement {
+pub fn exact_moments() -> JudgedClaim {
     let mut evidence = String::from(
         "Exact, points and weights of (27)-(29) in surds. For every mean and every covariance, whose square root is unknown, the points \
          have both:",
@@ -243,7 +243,7 @@ fn published_times(s: &Specification) -> [f64; 2] {
 const PRINTED_RATIO: f64 = 3.7;
 
 /// "The execution time for IMM-UKF is about 3.7 times more than IMM-CMKF."
-pub fn execution_time() -> Judgement {
+pub fn execution_time() -> JudgedClaim {
     let s = specification();
     let [converted, unscented] = published_times(s);
     let ratio = ratio_between(unscented, converted).zip(printed_between(PRINTED_RATIO));
@@ -320,7 +320,7 @@ fn conversion_covariance(conversion: Conversion) -> Matrix2<RationalFunction> {
 }
 
 /// "There is no linearization step on this filtering process."
-pub fn no_linearisation() -> Judgement {
+pub fn no_linearisation() -> JudgedClaim {
     let [r, c, s, v, w] = ["r", "c", "s", "v", "w"].map(RationalFunction::unknown);
     let propagated = first_order_covariance();
     let is_linearised = converted_covariance(&r, &c, &s, &v, &w) == propagated;

@@ -4,8 +4,8 @@
 //! all steps that were filtered, from the errors of x and y and the true places. Errors are kept in the form of the other papers,
 //! [x, ẋ, y, ẏ], so that the same statistics apply; those of the accelerations are left out.
 
-use super::contestants::{Contestant, Setup};
-use super::truth::{Draw, Motion, Trajectory};
+use super::contestants::{RadarFilter, RadarSetup};
+use super::truth::{Manoeuvre, RadarDraw, Trajectory};
 use super::{DURATION, INTERVAL, RADAR, RUNS};
 use crate::imm::{Imm, Step};
 use crate::model::conversion::Conversion;
@@ -29,7 +29,7 @@ pub enum FirstMeasurement {
 
 /// A simulation with every choice made.
 #[derive(Debug, Clone)]
-pub struct Scenario {
+pub struct RadarScenario {
     /// The choices that differ from the defaults.
     pub choices: Choices,
     /// What the target does.
@@ -39,12 +39,12 @@ pub struct Scenario {
     /// How the fit errors of x and y become one.
     pub fit_form: FitForm,
     /// What the filters are told.
-    pub setup: Setup,
+    pub setup: RadarSetup,
     /// The filters.
-    pub contestants: Vec<Contestant>,
+    pub contestants: Vec<RadarFilter>,
 }
 
-impl Scenario {
+impl RadarScenario {
     /// The first measurement that is filtered, counted from 0.
     fn first_filtered(&self) -> usize {
         match self.first_measurement {
@@ -58,7 +58,7 @@ impl Scenario {
     /// # Panics
     ///
     /// When the contestant's problem is not valid: the paper's problems are part of the program, and a test runs all of them.
-    pub fn track(&self, contestant: &Contestant, draw: &Draw) -> Run {
+    pub fn track(&self, contestant: &RadarFilter, draw: &RadarDraw) -> Run {
         let mut run = Run::with_room_for(DURATION);
         let initial = self.setup.initial(&draw.measurements[0]);
         let mut filter = Imm::with_equations(contestant.problem.clone(), contestant.equations, &initial)
@@ -78,7 +78,7 @@ impl Scenario {
     }
 
     /// The percentage fit error of a run in every form; none when it did not come to its end.
-    pub fn fit_errors(&self, run: &Run, draw: &Draw) -> Option<[f64; FitForm::ALL.len()]> {
+    pub fn fit_errors(&self, run: &Run, draw: &RadarDraw) -> Option<[f64; FitForm::ALL.len()]> {
         let truth = &draw.truth[self.first_filtered()..];
         let is_complete = run.failure.is_none();
         is_complete.then(|| FitForm::ALL.map(|form| fit_error(form, &run.errors, truth)))
@@ -107,7 +107,7 @@ fn record(run: &mut Run, step: &Step<f64, U6, U2>, truth: &Vector6<f64>) {
     run.mode_probabilities.push(step.mode_probabilities.clone());
 }
 
-impl Simulation for Scenario {
+impl Simulation for RadarScenario {
     fn paper(&self) -> &'static str {
         "sustika2015"
     }
@@ -132,7 +132,7 @@ impl Simulation for Scenario {
 
     fn motions(&self) -> Vec<&'static str> {
         // Nothing moves to the first state.
-        let first = Some(Motion::Straight).filter(|_| self.first_filtered() == 0);
+        let first = Some(Manoeuvre::Straight).filter(|_| self.first_filtered() == 0);
         let motions = first.iter().chain(&self.trajectory.motions);
         motions.map(|motion| motion.name()).collect()
     }
@@ -146,7 +146,7 @@ impl Simulation for Scenario {
     }
 
     fn filters(&self) -> Vec<Filter> {
-        let filter = |contestant: &Contestant| Filter {
+        let filter = |contestant: &RadarFilter| Filter {
             name: contestant.name.to_owned(),
             modes: contestant.problem.modes.iter().map(|mode| mode.name.clone()).collect(),
             points: contestant.points,

@@ -5,9 +5,9 @@
 //! so that a difference between filters is that of the runs, one by one. A run is called divergent when its percentage fit error exceeds
 //! [`DIVERGENT_FIT_ERROR`], and its measured bearings jump when two that follow each other differ by more than π.
 
-use super::contestants::Setup;
-use super::outcome::{Outcome, outcomes};
-use super::scenario::Scenario;
+use super::contestants::RadarSetup;
+use super::outcome::{RunOutcome, outcomes};
+use super::scenario::RadarScenario;
 use super::{DEGREE, DIVERGENT_FIT_ERROR, SWEPT_BEARING_DEGREES, SWEPT_NOISE_DENSITIES};
 use crate::paper::monte_carlo::Progress;
 use crate::paper::specification::{Choices, InvalidChoice};
@@ -20,14 +20,14 @@ use std::fmt::Write as _;
 /// A trajectory of the paper.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Trajectory {
+pub enum SweptTrajectory {
     /// Without manoeuvres.
     Straight,
     /// With manoeuvres.
     Manoeuvring,
 }
 
-impl Trajectory {
+impl SweptTrajectory {
     /// Both.
     pub const ALL: [Self; 2] = [Self::Straight, Self::Manoeuvring];
 
@@ -43,14 +43,14 @@ impl Trajectory {
 /// Which of the filters' noise parameters is varied; the other is the truth's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Parameter {
+pub enum SweptParameter {
     /// q of both modes.
     NoiseDensity,
     /// σ_θ in degrees.
     BearingDegrees,
 }
 
-impl Parameter {
+impl SweptParameter {
     /// Both, in the order of table 3.
     pub const ALL: [Self; 2] = [Self::NoiseDensity, Self::BearingDegrees];
 
@@ -77,7 +77,7 @@ impl Parameter {
     }
 
     /// What the filters are told with another value of this parameter.
-    fn set(self, setup: &Setup, value: f64) -> Setup {
+    fn set(self, setup: &RadarSetup, value: f64) -> RadarSetup {
         let mut setup = setup.clone();
         match self {
             Self::NoiseDensity => setup.noise_density = value,
@@ -89,21 +89,21 @@ impl Parameter {
 
 /// A setting of the sweep.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Setting {
+pub struct SweepSetting {
     /// The trajectory.
-    pub trajectory: Trajectory,
+    pub trajectory: SweptTrajectory,
     /// What is varied.
-    pub parameter: Parameter,
+    pub parameter: SweptParameter,
     /// Its value, m²/s³ and m²/s⁵, or degrees.
     pub value: f64,
 }
 
 /// All settings of scenario 3, in the order in which they are run.
-pub fn settings() -> Vec<Setting> {
+pub fn settings() -> Vec<SweepSetting> {
     let mut settings = Vec::new();
-    for trajectory in Trajectory::ALL {
-        for parameter in Parameter::ALL {
-            settings.extend(parameter.values().into_iter().map(|value| Setting {
+    for trajectory in SweptTrajectory::ALL {
+        for parameter in SweptParameter::ALL {
+            settings.extend(parameter.values().into_iter().map(|value| SweepSetting {
                 trajectory,
                 parameter,
                 value,
@@ -133,7 +133,7 @@ pub struct Fit {
 
 /// What the runs show at one setting.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Point {
+pub struct SweepPoint {
     /// The runs whose measured bearings jump.
     pub runs_with_jump: usize,
     /// Of each of [`FILTERS`].
@@ -145,13 +145,13 @@ pub struct Point {
 }
 
 /// The runs of a scenario with [`FILTERS`] in the place of its own filters.
-pub fn point(scenario: &Scenario, runs: usize, seed: u64, progress: Progress) -> Point {
-    Point::of(&outcomes(scenario, runs, seed, progress), scenario.fit_form)
+pub fn point(scenario: &RadarScenario, runs: usize, seed: u64, progress: Progress) -> SweepPoint {
+    SweepPoint::of(&outcomes(scenario, runs, seed, progress), scenario.fit_form)
 }
 
-impl Point {
+impl SweepPoint {
     /// What the outcomes show.
-    pub fn of(outcomes: &[Outcome], form: FitForm) -> Self {
+    pub fn of(outcomes: &[RunOutcome], form: FitForm) -> Self {
         Self {
             runs_with_jump: outcomes.iter().filter(|outcome| outcome.jumps).count(),
             fits: [0, 1, 2].map(|filter| fit(outcomes, form, filter)),
@@ -162,7 +162,7 @@ impl Point {
 }
 
 /// What the outcomes show of one filter.
-fn fit(outcomes: &[Outcome], form: FitForm, filter: usize) -> Fit {
+fn fit(outcomes: &[RunOutcome], form: FitForm, filter: usize) -> Fit {
     let completed = outcomes
         .iter()
         .filter_map(|outcome| Some((outcome.jumps, outcome.fit(form, filter)?)));
@@ -178,8 +178,8 @@ fn fit(outcomes: &[Outcome], form: FitForm, filter: usize) -> Fit {
 }
 
 /// The mean over runs of one filter's fit error less another's.
-fn difference(outcomes: &[Outcome], form: FitForm, a: usize, b: usize) -> Estimate {
-    let of_run = |outcome: &Outcome| Some(outcome.fit(form, a)? - outcome.fit(form, b)?);
+fn difference(outcomes: &[RunOutcome], form: FitForm, a: usize, b: usize) -> Estimate {
+    let of_run = |outcome: &RunOutcome| Some(outcome.fit(form, a)? - outcome.fit(form, b)?);
     mean(&outcomes.iter().filter_map(of_run).collect::<Vec<f64>>())
 }
 
@@ -204,8 +204,8 @@ pub struct Sweep {
     pub runs: usize,
     /// The seed of the random numbers.
     pub seed: u64,
-    straight: Scenario,
-    manoeuvring: Scenario,
+    straight: RadarScenario,
+    manoeuvring: RadarScenario,
 }
 
 impl Sweep {
@@ -234,24 +234,24 @@ impl Sweep {
     }
 
     /// The scenario of a setting.
-    pub fn scenario(&self, setting: &Setting) -> Scenario {
+    pub fn scenario(&self, setting: &SweepSetting) -> RadarScenario {
         let scenario = match setting.trajectory {
-            Trajectory::Straight => &self.straight,
-            Trajectory::Manoeuvring => &self.manoeuvring,
+            SweptTrajectory::Straight => &self.straight,
+            SweptTrajectory::Manoeuvring => &self.manoeuvring,
         };
-        Scenario {
+        RadarScenario {
             setup: setting.parameter.set(&scenario.setup, setting.value),
             ..scenario.clone()
         }
     }
 
     /// The runs at one setting.
-    pub fn point(&self, setting: &Setting, progress: Progress) -> Point {
+    pub fn point(&self, setting: &SweepSetting, progress: Progress) -> SweepPoint {
         point(&self.scenario(setting), self.runs, self.seed, progress)
     }
 
     /// All settings, in their order.
-    pub fn run(&self, progress: Progress) -> Vec<(Setting, Point)> {
+    pub fn run(&self, progress: Progress) -> Vec<(SweepSetting, SweepPoint)> {
         let settings = settings().into_iter();
         settings
             .map(|setting| (setting, self.point(&setting, progress)))
@@ -266,7 +266,7 @@ impl Sweep {
     /// trajectory,parameter,value,runs_with_jump,cmkf_mean,…
     /// straight,noise-density,0.01,12,1.8…,…
     /// ```
-    pub fn csv(&self, points: &[(Setting, Point)]) -> String {
+    pub fn csv(&self, points: &[(SweepSetting, SweepPoint)]) -> String {
         let Self { seed, runs, .. } = self;
         let mut text = format!(
             "# {FORMAT}; seed {seed}; runs {runs}; choices {}\n",
@@ -307,7 +307,7 @@ pub fn columns() -> String {
 }
 
 /// A setting and its point as a line.
-pub fn line(setting: &Setting, point: &Point) -> String {
+pub fn line(setting: &SweepSetting, point: &SweepPoint) -> String {
     let (trajectory, parameter) = (setting.trajectory.name(), setting.parameter.name());
     let mut line = format!("{trajectory},{parameter},{:?},{}", setting.value, point.runs_with_jump);
     for fit in &point.fits {

@@ -23,14 +23,14 @@ use std::f64::consts::PI;
 
 /// What the target does in a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Motion {
+pub enum Manoeuvre {
     /// Constant velocity.
     Straight,
     /// Constant acceleration.
     Manoeuvre,
 }
 
-impl Motion {
+impl Manoeuvre {
     /// The name of the mode that models this motion.
     pub fn name(self) -> &'static str {
         match self {
@@ -42,7 +42,7 @@ impl Motion {
 
 /// How random the trajectory is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Noise {
+pub enum TruthNoise {
     /// Process noise, anew in every run.
     EachRun,
     /// Process noise, the same in every run.
@@ -55,14 +55,14 @@ pub enum Noise {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory {
     /// The motions of steps 2, 3, …, 200; the state of step 1 is the initial one.
-    pub motions: Vec<Motion>,
+    pub motions: Vec<Manoeuvre>,
     /// How random it is.
-    pub noise: Noise,
+    pub noise: TruthNoise,
 }
 
 /// What is true and what is seen in one run, of steps 1, 2, …, 200.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Draw {
+pub struct RadarDraw {
     /// The true states.
     pub truth: Vec<Vector6<f64>>,
     /// Range and bearing, m and rad.
@@ -71,13 +71,13 @@ pub struct Draw {
 
 impl Trajectory {
     /// A trajectory with manoeuvres at the given times, first and last second of each.
-    pub fn new(manoeuvres: &[[usize; 2]], noise: Noise) -> Self {
+    pub fn new(manoeuvres: &[[usize; 2]], noise: TruthNoise) -> Self {
         let motion = |second: usize| {
             let is_in = |[first, last]: &[usize; 2]| (*first..=*last).contains(&second);
             if manoeuvres.iter().any(is_in) {
-                Motion::Manoeuvre
+                Manoeuvre::Manoeuvre
             } else {
-                Motion::Straight
+                Manoeuvre::Straight
             }
         };
         Self {
@@ -87,16 +87,16 @@ impl Trajectory {
     }
 
     /// The truth and the measurements of a run.
-    pub fn draw(&self, run: usize, seed: u64) -> Draw {
+    pub fn draw(&self, run: usize, seed: u64) -> RadarDraw {
         let stream =
             |run: usize, which: u64| Generator::new(seed, 2 * u64::try_from(run).unwrap_or(u64::MAX / 4) + which);
         let run_of_truth = match self.noise {
-            Noise::EachRun => run,
-            Noise::OneTrajectory | Noise::Free => 0,
+            TruthNoise::EachRun => run,
+            TruthNoise::OneTrajectory | TruthNoise::Free => 0,
         };
         let truth = self.truth(&mut stream(run_of_truth, 0));
         let mut generator = stream(run, 1);
-        Draw {
+        RadarDraw {
             measurements: truth.iter().map(|state| measure(state, &mut generator)).collect(),
             truth,
         }
@@ -120,8 +120,8 @@ impl Trajectory {
         let mut states = vec![state];
         for motion in &self.motions {
             let (transition, root) = match motion {
-                Motion::Straight => &straight,
-                Motion::Manoeuvre => &manoeuvre,
+                Manoeuvre::Straight => &straight,
+                Manoeuvre::Manoeuvre => &manoeuvre,
             };
             // The transition of constant velocity has no acceleration in it, so that what a manoeuvre leaves ends with it.
             state = transition * state + root * Vector6::from_fn(|_, _| generator.standard_normal());
@@ -137,8 +137,10 @@ impl Trajectory {
     /// When a covariance of the models has none; they are constant, and every draw uses them.
     fn noise_root(&self, covariance: &Matrix6<f64>) -> Matrix6<f64> {
         match self.noise {
-            Noise::EachRun | Noise::OneTrajectory => cholesky(covariance).expect("the models' noises are covariances"),
-            Noise::Free => Matrix6::zeros(),
+            TruthNoise::EachRun | TruthNoise::OneTrajectory => {
+                cholesky(covariance).expect("the models' noises are covariances")
+            }
+            TruthNoise::Free => Matrix6::zeros(),
         }
     }
 }

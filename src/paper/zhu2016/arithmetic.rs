@@ -6,14 +6,14 @@
 use super::quantity_of_row;
 use crate::number::Rational;
 use crate::paper::specification::Specification;
-use crate::paper::verdict::{Judgement, Verdict, proven_if, refuted_by};
+use crate::paper::verdict::{JudgedClaim, Verdict, proven_if, refuted_by};
 use crate::rule::unscented::Parameters;
 use crate::rule::{ExactRule, fifth_degree, third_degree, unscented};
 use crate::statistics::estimate::figure;
 use std::fmt::Write;
 
 /// The figures of table 1 against each other.
-pub fn all_rmse_smaller(s: &Specification) -> Judgement {
+pub fn all_rmse_smaller(s: &Specification) -> JudgedClaim {
     let rows = s.tables[0]
         .rows
         .iter()
@@ -35,7 +35,7 @@ pub fn all_rmse_smaller(s: &Specification) -> Judgement {
 }
 
 /// The dimensions in which the unscented points with κ = 3 − n are those of the third-degree rule.
-pub fn three_dimensions_equal(s: &Specification) -> Judgement {
+pub fn three_dimensions_equal(s: &Specification) -> JudgedClaim {
     let coincide = |n: usize| {
         let unscented = unscented::unscented(n, &Parameters::for_gaussian(n));
         let third = third_degree::third_degree(n);
@@ -55,7 +55,7 @@ pub fn three_dimensions_equal(s: &Specification) -> Judgement {
 }
 
 /// The negative weights of the fifth-degree rule in many dimensions: each, and all together.
-pub fn negative_weights_vanish(s: &Specification) -> Judgement {
+pub fn negative_weights_vanish(s: &Specification) -> JudgedClaim {
     let dimensions = [4, 8, 16, 32, 64];
     let zero = Rational::new(0, 1);
     let mut evidence =
@@ -88,7 +88,7 @@ pub fn negative_weights_vanish(s: &Specification) -> Judgement {
 }
 
 /// How many weights the fifth-degree rule has.
-pub fn equal_weights(s: &Specification) -> Judgement {
+pub fn equal_weights(s: &Specification) -> JudgedClaim {
     let Ok(rule) = fifth_degree::fifth_degree(4) else {
         return s.judgement("zhu2016-equal-weights", Verdict::Undecided, String::new());
     };
@@ -106,7 +106,7 @@ pub fn equal_weights(s: &Specification) -> Judgement {
 }
 
 /// Points, and the published times.
-pub fn load(s: &Specification) -> Judgement {
+pub fn load(s: &Specification) -> JudgedClaim {
     let count = |rule: Result<ExactRule, _>| rule.map_or((0, 0), |r: ExactRule| (r.points.len(), r.effective_points()));
     let (points, effective) = count(fifth_degree::fifth_degree(4));
     let (third, _) = count(third_degree::third_degree(4));
@@ -126,7 +126,7 @@ pub fn load(s: &Specification) -> Judgement {
 }
 
 /// A filter that was not run.
-pub fn better_than_ckf(s: &Specification) -> Judgement {
+pub fn better_than_ckf(s: &Specification) -> JudgedClaim {
     let columns = &s.tables[0].columns;
     let evidence = format!(
         "The filters that were run are {}; a single CKF is not among them.",

@@ -8,12 +8,12 @@ use crate::filter::Filter;
 use crate::model::motion::coordinated_turn;
 use crate::number::Rational;
 use crate::paper::Effort;
-use crate::paper::comparison::{Comparison, Quantity};
+use crate::paper::comparison::{Comparison, ErrorQuantity};
 use crate::paper::experiment::Experiment;
 use crate::paper::monte_carlo::{Progress, run};
 use crate::paper::scenario::{Contestant, Motion, Scenario};
 use crate::paper::specification::{Choices, InvalidChoice, Specification, zhu2016 as specification};
-use crate::paper::verdict::{DECISIVE, Judgement, Verdict, all_below_zero, confirmed_if, in_words, proven_if};
+use crate::paper::verdict::{DECISIVE, JudgedClaim, Verdict, all_below_zero, confirmed_if, in_words, proven_if};
 use crate::rule::sphere::{on_axes, on_axes_and_diagonals};
 use crate::rule::unscented::Parameters;
 use crate::rule::{Rule, RuleName, fifth_degree, third_degree, unscented};
@@ -35,7 +35,12 @@ const KALMAN: usize = 5;
 const RULES: [usize; 3] = [IMM5CKF, IMMCKF, IMMUKF];
 
 /// The components of the state, as the paper's table has them.
-const COMPONENTS: [Quantity; 4] = [Quantity::X, Quantity::VelocityX, Quantity::Y, Quantity::VelocityY];
+const COMPONENTS: [ErrorQuantity; 4] = [
+    ErrorQuantity::X,
+    ErrorQuantity::VelocityX,
+    ErrorQuantity::Y,
+    ErrorQuantity::VelocityY,
+];
 
 /// Two filters agree when no estimate differs by more than a millionth of the least standard deviation in the problem, √0.1 m. In a
 /// hundred steps at positions of 10⁴ m rounding leaves far less; a difference of the filters would be far more.
@@ -46,7 +51,7 @@ const AGREEMENT: f64 = 0.3e-6;
 /// # Errors
 ///
 /// [`InvalidChoice`] when the specification lacks an alternative that a judge asks for.
-pub fn judge(effort: Effort, progress: Progress) -> Result<Vec<Judgement>, InvalidChoice> {
+pub fn judge(effort: Effort, progress: Progress) -> Result<Vec<JudgedClaim>, InvalidChoice> {
     let experiment = |parameter: &str, alternative: &str| {
         let scenario = scenario(&Choices::of(parameter, alternative))?;
         Ok(Experiment::new(scenario, effort, progress))
@@ -121,7 +126,7 @@ fn distance_from_kalman(comparison: &Comparison) -> (f64, f64) {
 }
 
 /// The three filters with points beside the Kalman filter.
-pub fn linear_accuracy(s: &Specification, printed: &Experiment) -> Judgement {
+pub fn linear_accuracy(s: &Specification, printed: &Experiment) -> JudgedClaim {
     let (estimates, probabilities) = distance_from_kalman(&printed.comparison());
     let evidence = format!(
         "Over all steps of {} runs no estimate of the three differs from the Kalman filter in the same cycle by more than {} (m, m/s) \
@@ -136,14 +141,14 @@ pub fn linear_accuracy(s: &Specification, printed: &Experiment) -> Judgement {
 }
 
 /// The first filter beside the one of a single model, whichever that is.
-pub fn better_than_single_model(s: &Specification, experiments: &[Experiment; 3]) -> Judgement {
+pub fn better_than_single_model(s: &Specification, experiments: &[Experiment; 3]) -> JudgedClaim {
     let mut differences = Vec::new();
     let mut evidence = String::from("IMM5CKF minus single 5CKF, error of position:");
     for experiment in experiments {
         let comparison = experiment.comparison();
         let of = |quantity| comparison.difference(IMM5CKF, SINGLE, quantity);
         differences.extend(COMPONENTS.map(of));
-        let words = in_words(of(Quantity::Position), "m");
+        let words = in_words(of(ErrorQuantity::Position), "m");
         let _ = write!(evidence, " {} {words};", experiment.scenario.choices.describe());
     }
     let verdict = all_below_zero(&differences);
@@ -160,8 +165,10 @@ pub fn better_than_single_model(s: &Specification, experiments: &[Experiment; 3]
 }
 
 /// The first filter beside a stand-in for one that the paper does not print.
-pub fn better_than_omtm(s: &Specification, printed: &Experiment) -> Judgement {
-    let difference = printed.comparison().difference(IMM5CKF, STAND_IN, Quantity::Position);
+pub fn better_than_omtm(s: &Specification, printed: &Experiment) -> JudgedClaim {
+    let difference = printed
+        .comparison()
+        .difference(IMM5CKF, STAND_IN, ErrorQuantity::Position);
     let evidence = format!(
         "The paper gives no equation of OMTM-IMM and neither does what could be obtained of its source. Against the stand-in of this \
          crate, which decides nothing about it, the position error of IMM5CKF minus its own is {}.",
@@ -171,7 +178,7 @@ pub fn better_than_omtm(s: &Specification, printed: &Experiment) -> Judgement {
 }
 
 /// How late the first filter notices a change of motion.
-pub fn captures_switches(s: &Specification, printed: &Experiment) -> Judgement {
+pub fn captures_switches(s: &Specification, printed: &Experiment) -> JudgedClaim {
     let comparison = printed.comparison();
     let delays = comparison.delays(IMM5CKF);
     let missed: usize = delays.iter().flatten().filter(|delay| delay.is_none()).count();
@@ -194,7 +201,7 @@ fn delay_summary(delays: &[Option<usize>]) -> String {
 }
 
 /// Mode probabilities and delays of the three filters beside each other.
-pub fn switching_sensitivity(s: &Specification, printed: &Experiment) -> Judgement {
+pub fn switching_sensitivity(s: &Specification, printed: &Experiment) -> JudgedClaim {
     let comparison = printed.comparison();
     let probabilities = [IMMCKF, IMMUKF].map(|other| comparison.greatest_probability_difference(IMM5CKF, other));
     let same_delays = [IMMCKF, IMMUKF]
@@ -215,7 +222,7 @@ pub fn switching_sensitivity(s: &Specification, printed: &Experiment) -> Judgeme
 }
 
 /// The first filter beside those of one model, in turns and on straight parts.
-pub fn imm_beats_single_model(s: &Specification, experiments: &[Experiment; 3]) -> Judgement {
+pub fn imm_beats_single_model(s: &Specification, experiments: &[Experiment; 3]) -> JudgedClaim {
     let mut evidence = String::from("IMM5CKF minus the single filter, error of position:");
     let mut differences = Vec::new();
     for experiment in &experiments[..2] {
@@ -223,8 +230,9 @@ pub fn imm_beats_single_model(s: &Specification, experiments: &[Experiment; 3]) 
         let schedule = &experiment.scenario.schedule;
         let straight = |k: usize| schedule[k] == Motion::Straight;
         let turning = |k: usize| schedule[k] != Motion::Straight;
-        let over =
-            |chosen: &dyn Fn(usize) -> bool| comparison.difference_over(IMM5CKF, SINGLE, Quantity::Position, chosen);
+        let over = |chosen: &dyn Fn(usize) -> bool| {
+            comparison.difference_over(IMM5CKF, SINGLE, ErrorQuantity::Position, chosen)
+        };
         let (in_turns, on_straights) = (over(&turning), over(&straight));
         let _ = write!(
             evidence,
@@ -242,7 +250,7 @@ pub fn imm_beats_single_model(s: &Specification, experiments: &[Experiment; 3]) 
 }
 
 /// Negative weights, and what they do in the scenario.
-pub fn negative_weights_diverge(s: &Specification, printed: &Experiment) -> Judgement {
+pub fn negative_weights_diverge(s: &Specification, printed: &Experiment) -> JudgedClaim {
     let negative: Vec<String> = (4..=8)
         .filter_map(|n| unscented::unscented(n, &Parameters::for_gaussian(n)).ok())
         .map(|rule| {
@@ -269,20 +277,20 @@ pub fn negative_weights_diverge(s: &Specification, printed: &Experiment) -> Judg
 }
 
 /// Whether any run fails or goes far off.
-pub fn no_divergence(s: &Specification, printed: &Experiment) -> Judgement {
+pub fn no_divergence(s: &Specification, printed: &Experiment) -> JudgedClaim {
     // Diverged: further away than ten times the deviation with which a run starts, √1000 m.
     let (bounded, evidence) = printed.stays_within(10.0 * 1000_f64.sqrt());
     s.judgement("zhu2016-no-divergence", confirmed_if(bounded), evidence)
 }
 
 /// The filter of one model beside all others.
-pub fn single_model_worst(s: &Specification, experiments: &[Experiment; 3]) -> Judgement {
+pub fn single_model_worst(s: &Specification, experiments: &[Experiment; 3]) -> JudgedClaim {
     let mut differences = Vec::new();
     let mut evidence = String::from("Single 5CKF minus the worst of the others, error of position:");
     for experiment in experiments {
         let comparison = experiment.comparison();
-        let others =
-            [IMM5CKF, IMMCKF, IMMUKF, STAND_IN].map(|other| comparison.difference(other, SINGLE, Quantity::Position));
+        let others = [IMM5CKF, IMMCKF, IMMUKF, STAND_IN]
+            .map(|other| comparison.difference(other, SINGLE, ErrorQuantity::Position));
         let nearest = others
             .into_iter()
             .max_by(|a, b| a.value.total_cmp(&b.value))
@@ -301,7 +309,7 @@ pub fn single_model_worst(s: &Specification, experiments: &[Experiment; 3]) -> J
 }
 
 /// Whether the three filters are anything but Kalman filters here.
-pub fn nonlinear_filters_better_than_omtm(s: &Specification, printed: &Experiment) -> Judgement {
+pub fn nonlinear_filters_better_than_omtm(s: &Specification, printed: &Experiment) -> JudgedClaim {
     let (estimates, _) = distance_from_kalman(&printed.comparison());
     let evidence = format!(
         "On the printed, linear scenario each of the three equals the Kalman filter in the same cycle, to {} (m, m/s): whatever sets them \
@@ -313,7 +321,7 @@ pub fn nonlinear_filters_better_than_omtm(s: &Specification, printed: &Experimen
 }
 
 /// What the published columns differ by, beside what chance does.
-pub fn columns_differ(s: &Specification, printed: &Experiment) -> Judgement {
+pub fn columns_differ(s: &Specification, printed: &Experiment) -> JudgedClaim {
     // The premise, for n unknown: a rule of degree two or more is the Kalman filter on affine models.
     let n = crate::rule::sphere::every_dimension();
     let of = |value: i64| <crate::number::RationalFunction as crate::number::Field>::integer(value);
@@ -363,13 +371,13 @@ pub fn columns_differ(s: &Specification, printed: &Experiment) -> Judgement {
 }
 
 /// The same where range and bearing are measured.
-pub fn columns_differ_range_bearing(s: &Specification, experiments: &[Experiment; 2]) -> Judgement {
+pub fn columns_differ_range_bearing(s: &Specification, experiments: &[Experiment; 2]) -> JudgedClaim {
     let mut evidence = String::from("IMM5CKF over IMMCKF, error of position:");
     let mut greatest: f64 = 0.0;
     for experiment in experiments {
         let comparison = experiment.comparison();
-        let difference = comparison.difference(IMM5CKF, IMMCKF, Quantity::Position);
-        let relative = difference.value / comparison.error(IMMCKF, Quantity::Position).value;
+        let difference = comparison.difference(IMM5CKF, IMMCKF, ErrorQuantity::Position);
+        let relative = difference.value / comparison.error(IMMCKF, ErrorQuantity::Position).value;
         greatest = greatest.max(relative.abs());
         let _ = write!(
             evidence,
@@ -396,7 +404,7 @@ pub fn columns_differ_range_bearing(s: &Specification, experiments: &[Experiment
 }
 
 /// The published errors beside what the printed noise can give.
-pub fn table_1_reachable(s: &Specification, printed: &Experiment) -> Judgement {
+pub fn table_1_reachable(s: &Specification, printed: &Experiment) -> JudgedClaim {
     let bound = |variance: f64| steady_bound(variance, super::ACCELERATION_VARIANCE);
     let [in_x, in_y] = super::MEASUREMENT_VARIANCES.map(bound);
     let comparison = printed.comparison();
@@ -418,8 +426,8 @@ pub fn table_1_reachable(s: &Specification, printed: &Experiment) -> Judgement {
          figure of the row RMSE_Y, and 5CKF in x, is out of reach of the printed noise.",
         figure(in_x),
         figure(in_y),
-        computed(Quantity::X),
-        computed(Quantity::Y),
+        computed(ErrorQuantity::X),
+        computed(ErrorQuantity::Y),
         x.first().copied().unwrap_or(f64::NAN),
         x.get(3).copied().unwrap_or(f64::NAN),
         y.first().copied().unwrap_or(f64::NAN),
@@ -444,7 +452,7 @@ fn steady_bound(variance: f64, acceleration_variance: f64) -> f64 {
 }
 
 /// A run with the weight as printed.
-pub fn printed_weight(s: &Specification, printed: &Experiment) -> Judgement {
+pub fn printed_weight(s: &Specification, printed: &Experiment) -> JudgedClaim {
     let n: Rational = Rational::new(4, 1);
     let sum = RuleName::FifthDegreePrinted
         .exact(4)
@@ -463,7 +471,7 @@ pub fn printed_weight(s: &Specification, printed: &Experiment) -> Judgement {
         || {
             format!(
                 "after 100 steps by {} m",
-                figure(Quantity::Position.squared(&runs[0][0].errors[99]).sqrt())
+                figure(ErrorQuantity::Position.squared(&runs[0][0].errors[99]).sqrt())
             )
         },
         |failure| format!("and then fails: {failure}"),
@@ -474,7 +482,7 @@ pub fn printed_weight(s: &Specification, printed: &Experiment) -> Judgement {
          filter that uses it is off by {} m after the first measurement, {last}. The printed figures do not come from it.",
         figure(prediction[0] * sum.to_f64()),
         figure(prediction[0]),
-        figure(Quantity::Position.squared(&first).sqrt()),
+        figure(ErrorQuantity::Position.squared(&first).sqrt()),
     );
     s.judgement(
         "zhu2016-printed-weight",

@@ -39,7 +39,7 @@ pub mod arithmetic;
 pub mod claims;
 pub mod diagonal_mixing;
 
-use super::comparison::Quantity;
+use super::comparison::ErrorQuantity;
 use super::scenario::{Contestant, Motion, Scenario};
 use super::simulation::Average;
 use super::specification::{Choices, InvalidChoice, zhu2016 as specification};
@@ -312,12 +312,12 @@ impl Builder {
 }
 
 /// The quantity of a row of the paper's table 1; none for its times.
-pub fn quantity_of_row(name: &str) -> Option<Quantity> {
+pub fn quantity_of_row(name: &str) -> Option<ErrorQuantity> {
     match name {
-        "RMSE_X" => Some(Quantity::X),
-        "RMSE_X_V" => Some(Quantity::VelocityX),
-        "RMSE_Y" => Some(Quantity::Y),
-        "RMSE_Y_V" => Some(Quantity::VelocityY),
+        "RMSE_X" => Some(ErrorQuantity::X),
+        "RMSE_X_V" => Some(ErrorQuantity::VelocityX),
+        "RMSE_Y" => Some(ErrorQuantity::Y),
+        "RMSE_Y_V" => Some(ErrorQuantity::VelocityY),
         _ => None,
     }
 }

@@ -6,10 +6,10 @@
 use crate::paper::monte_carlo::Progress;
 use crate::paper::result::Reproduction;
 use crate::paper::specification::{Choices, InvalidChoice};
-use crate::paper::sustika2015::divergence::{self, Row};
-use crate::paper::sustika2015::sweep::{Point, Setting, Sweep, settings};
+use crate::paper::sustika2015::divergence::{self, DivergenceRow};
+use crate::paper::sustika2015::sweep::{Sweep, SweepPoint, SweepSetting, settings};
 use crate::paper::sustika2015::{self};
-use crate::paper::verdict::Judgement;
+use crate::paper::verdict::JudgedClaim;
 use crate::paper::{Effort, Paper};
 use crate::steady::map::Map;
 use crate::steady::verdict::Depth;
@@ -31,16 +31,16 @@ pub struct Content {
     /// What was run of each paper.
     pub papers: Vec<OfPaper>,
     /// Scenario 3 of sustika2015.
-    pub sweep: Runs<Vec<(Setting, Point)>>,
+    pub sweep: OfRuns<Vec<(SweepSetting, SweepPoint)>>,
     /// What makes the unscented filter of sustika2015 diverge.
-    pub divergence: Runs<Vec<Row>>,
+    pub divergence: OfRuns<Vec<DivergenceRow>>,
     /// Which fixed-gain filters are stable together.
     pub map: Map,
 }
 
 /// Results, and from how many runs each of them is.
 #[derive(Debug, Clone)]
-pub struct Runs<T> {
+pub struct OfRuns<T> {
     /// The number of runs.
     pub runs: usize,
     /// What they show.
@@ -55,7 +55,7 @@ pub struct OfPaper {
     /// Its simulations: each under its defaults, then under each open choice by itself.
     pub simulations: Vec<Vec<Reproduction>>,
     /// Its claims, judged.
-    pub judgements: Vec<Judgement>,
+    pub judgements: Vec<JudgedClaim>,
 }
 
 /// Whoever watches the computation: the step that begins, with its length where that is known, and every unit that is done.
@@ -106,21 +106,21 @@ impl OfPaper {
     }
 }
 
-fn sweep(effort: Effort, watch: &Watch) -> Result<Runs<Vec<(Setting, Point)>>, InvalidChoice> {
+fn sweep(effort: Effort, watch: &Watch) -> Result<OfRuns<Vec<(SweepSetting, SweepPoint)>>, InvalidChoice> {
     let runs = effort.runs.unwrap_or(sustika2015::RUNS);
     (watch.begin)("sweeping sustika2015".to_owned(), Some(settings().len() * runs));
     let sweep = Sweep::new(&Choices::default(), runs, effort.seed)?;
-    Ok(Runs {
+    Ok(OfRuns {
         runs,
         results: sweep.run(watch.advance),
     })
 }
 
-fn divergence(effort: Effort, watch: &Watch) -> Result<Runs<Vec<Row>>, InvalidChoice> {
+fn divergence(effort: Effort, watch: &Watch) -> Result<OfRuns<Vec<DivergenceRow>>, InvalidChoice> {
     let runs = effort.runs.unwrap_or(divergence::RUNS);
     let length = divergence::SIMULATIONS.len() * runs;
     (watch.begin)("looking for what diverges".to_owned(), Some(length));
-    Ok(Runs {
+    Ok(OfRuns {
         runs,
         results: divergence::rows(runs, effort.seed, watch.advance)?,
     })

@@ -3,12 +3,12 @@
 //! After this file the reader knows how a drawing comes onto the page: as it is drawn for a file, with a caption; the page's style gives
 //! its colours on a dark screen.
 
-use super::content::{Content, OfPaper, Runs};
+use super::content::{Content, OfPaper, OfRuns};
 use super::table::table;
 use crate::paper::Paper;
 use crate::paper::result::Reproduction;
-use crate::paper::sustika2015::divergence::Row;
-use crate::paper::sustika2015::sweep::Trajectory;
+use crate::paper::sustika2015::divergence::DivergenceRow;
+use crate::paper::sustika2015::sweep::SweptTrajectory;
 use crate::report::chart::NotDrawn;
 use crate::report::{
     conversion, divergence, figure, fit_error, long_term, path, published, reproduction, stability_map,
@@ -105,7 +105,7 @@ fn of_sustika2015(content: &Content) -> Result<Vec<Markup>, NotDrawn> {
     let mut figures = vec![
         html! { h4 #sustika2015-figures-sweep { "Scenario 3: the fit error over the noises that the filters take for granted" } },
     ];
-    for (trajectory, number) in Trajectory::ALL.into_iter().zip([2, 4]) {
+    for (trajectory, number) in SweptTrajectory::ALL.into_iter().zip([2, 4]) {
         figures.push(framed(
             &fit_error::draw(&content.sweep.results, trajectory, content.sweep.runs)?,
             &format!("Figure {number} of the paper: the percentage fit error over the filters’ noises."),
@@ -121,7 +121,7 @@ fn of_sustika2015(content: &Content) -> Result<Vec<Markup>, NotDrawn> {
     Ok(figures)
 }
 
-fn divergences(rows: &Runs<Vec<Row>>) -> Markup {
+fn divergences(rows: &OfRuns<Vec<DivergenceRow>>) -> Markup {
     html! {
         (table(&divergence::legend(rows.runs), &divergence::HEADER, &divergence::cells(&rows.results)))
         p { (divergence::cause(&rows.results, rows.runs)) }

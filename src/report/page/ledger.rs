@@ -4,7 +4,7 @@
 //! what came out.
 
 use super::content::OfPaper;
-use crate::paper::verdict::{Judgement, Verdict};
+use crate::paper::verdict::{JudgedClaim, Verdict};
 use maud::{Markup, html};
 
 /// All verdicts, the firmest first.
@@ -19,7 +19,7 @@ pub const VERDICTS: [Verdict; 5] = [
 /// The claims of a paper, in its order.
 pub fn section(of_paper: &OfPaper) -> Markup {
     let key = of_paper.paper.key();
-    let judged_by = |judgement: &Judgement| {
+    let judged_by = |judgement: &JudgedClaim| {
         let claims = &of_paper.paper.specification().claims;
         let claim = claims.iter().find(|claim| claim.id == judgement.id);
         claim.map_or("", |claim| claim.judged_by.as_str())
@@ -52,7 +52,7 @@ pub fn mark(verdict: Verdict) -> Markup {
 }
 
 /// How many claims have a verdict.
-pub fn count(judgements: &[Judgement], verdict: Verdict) -> usize {
+pub fn count(judgements: &[JudgedClaim], verdict: Verdict) -> usize {
     judgements
         .iter()
         .filter(|judgement| judgement.verdict == verdict)
@@ -60,7 +60,7 @@ pub fn count(judgements: &[Judgement], verdict: Verdict) -> usize {
 }
 
 /// How often each verdict was given, in a sentence.
-fn counts(judgements: &[Judgement]) -> String {
+fn counts(judgements: &[JudgedClaim]) -> String {
     let given = VERDICTS
         .into_iter()
         .map(|verdict| (count(judgements, verdict), verdict));

@@ -6,11 +6,11 @@ use super::content::{Content, OfPaper};
 use super::table::{framed, table};
 use super::{errata, figures, ledger};
 use crate::paper::Paper;
-use crate::paper::comparison::Quantity;
+use crate::paper::comparison::ErrorQuantity;
 use crate::paper::result::Reproduction;
-use crate::paper::specification::{Citation, Table};
+use crate::paper::specification::{Citation, PublishedTable};
 use crate::report::chart::NotDrawn;
-use crate::report::reproduction::{self, Comparison, compare};
+use crate::report::reproduction::{self, SideBySide, compare};
 use crate::report::standard_errors;
 use crate::statistics::estimate::figure;
 use maud::{Markup, html};
@@ -107,7 +107,7 @@ fn title(paper: Paper, reproduction: &Reproduction) -> String {
 }
 
 /// A published table beside the computed one.
-fn side_by_side(published: &Table, comparisons: &[Comparison]) -> Markup {
+fn side_by_side(published: &PublishedTable, comparisons: &[SideBySide]) -> Markup {
     let caption = format!(
         "Table {} of the paper, published beside computed. {}",
         published.number, published.caption
@@ -128,7 +128,7 @@ fn side_by_side(published: &Table, comparisons: &[Comparison]) -> Markup {
 }
 
 /// The rows of one quantity, a filter a row.
-fn rows_of(comparisons: &[Comparison]) -> Markup {
+fn rows_of(comparisons: &[SideBySide]) -> Markup {
     html! {
         @for (place, comparison) in comparisons.iter().enumerate() {
             tr {
@@ -146,7 +146,7 @@ fn rows_of(comparisons: &[Comparison]) -> Markup {
 }
 
 /// A published table that no simulation is of: what the claims say of it is computed there.
-fn unreproduced(of_paper: &OfPaper, published: &Table) -> Markup {
+fn unreproduced(of_paper: &OfPaper, published: &PublishedTable) -> Markup {
     let is_reproduced = |reproductions: &Vec<Reproduction>| {
         reproductions
             .first()
@@ -182,7 +182,7 @@ fn unreproduced(of_paper: &OfPaper, published: &Table) -> Markup {
 /// The filters compared in pairs.
 fn differences(reproduction: &Reproduction) -> Markup {
     let of = |quantity| reproduction.differences.iter().filter(move |d| d.quantity == quantity);
-    let pairs = of(Quantity::Position).zip(of(Quantity::Velocity));
+    let pairs = of(ErrorQuantity::Position).zip(of(ErrorQuantity::Velocity));
     let rows: Vec<Vec<String>> = pairs
         .map(|(position, velocity)| {
             let cells = [position, velocity].map(|difference| reproduction::with_distance(difference.estimate));

@@ -4,14 +4,14 @@
 
 use super::super::{GOOD_FIT_ERROR, RUNS};
 use super::evidence::{
-    CONVERTED, Evidence, PATHS, PLAIN, WINDOWS, WRAPPED, clauses, less_limit, opposite, published, words,
+    CONVERTED, PATHS, PLAIN, RadarEvidence, WINDOWS, WRAPPED, clauses, less_limit, opposite, published, words,
 };
 use super::manoeuvring::gaps;
 use super::straight::wrapped_and_not;
 use crate::paper::operations::{CoastalRadar, Sums};
 use crate::paper::specification::Specification;
 use crate::paper::verdict::{
-    Judgement, all_below_zero, all_of, below_zero_whichever, confirmed_if, in_words, proven_if, sign_of, whichever,
+    JudgedClaim, all_below_zero, all_of, below_zero_whichever, confirmed_if, in_words, proven_if, sign_of, whichever,
 };
 use crate::statistics::Estimate;
 use crate::statistics::estimate::figure;
@@ -20,7 +20,7 @@ use std::cmp::Ordering;
 /// "A little": by less than a tenth.
 const LITTLE: f64 = 0.1;
 
-pub fn a_little_better_without_mismatch(s: &Specification, runs: &Evidence) -> Judgement {
+pub fn a_little_better_without_mismatch(s: &Specification, runs: &RadarEvidence) -> JudgedClaim {
     let gains = [4, 5].map(|table| {
         let [converted, unscented] = published(s, table, 1);
         1.0 - unscented / converted
@@ -47,7 +47,7 @@ pub fn a_little_better_without_mismatch(s: &Specification, runs: &Evidence) -> J
     s.judgement("sustika2015-a-little-better-without-mismatch", verdict, evidence)
 }
 
-pub fn better_with_mismatch(s: &Specification, runs: &Evidence) -> Judgement {
+pub fn better_with_mismatch(s: &Specification, runs: &RadarEvidence) -> JudgedClaim {
     let [straight, manoeuvring] = [4, 5].map(|table| published(s, table, 2));
     let in_tables = [straight, manoeuvring]
         .iter()
@@ -78,7 +78,7 @@ pub fn better_with_mismatch(s: &Specification, runs: &Evidence) -> Judgement {
     s.judgement("sustika2015-better-with-mismatch", verdict, evidence)
 }
 
-pub fn bad_in_manoeuvres(s: &Specification, runs: &Evidence) -> Judgement {
+pub fn bad_in_manoeuvres(s: &Specification, runs: &RadarEvidence) -> JudgedClaim {
     let [converted, unscented] = published(s, 5, 2);
     let of_fifty = |path: usize, filter: usize| {
         let runs = &runs.scenarios[1][path];
@@ -111,7 +111,7 @@ pub fn bad_in_manoeuvres(s: &Specification, runs: &Evidence) -> Judgement {
     s.judgement("sustika2015-bad-in-manoeuvres", verdict, evidence)
 }
 
-pub fn suitable(s: &Specification, runs: &Evidence) -> Judgement {
+pub fn suitable(s: &Specification, runs: &RadarEvidence) -> JudgedClaim {
     let simulations = || {
         [1, 2]
             .into_iter()

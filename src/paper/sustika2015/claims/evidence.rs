@@ -9,8 +9,8 @@
 //! every open choice by itself, scenarios 1, 2  a sixteenth
 //! ```
 
-use super::super::outcome::{Outcome, outcomes};
-use super::super::sweep::{Parameter, Setting, Sweep, Trajectory};
+use super::super::outcome::{RunOutcome, outcomes};
+use super::super::sweep::{Sweep, SweepSetting, SweptParameter, SweptTrajectory};
 use super::super::{NOISE_DENSITY, RUNS, scenario};
 use crate::paper::Effort;
 use crate::paper::monte_carlo::Progress;
@@ -35,7 +35,7 @@ const JUDGED_RUNS: usize = 4000;
 
 /// The runs of a simulation.
 #[derive(Debug, Clone)]
-pub struct Runs(pub Vec<Outcome>);
+pub struct Runs(pub Vec<RunOutcome>);
 
 /// An open choice by itself, or none.
 #[derive(Debug, Clone)]
@@ -50,16 +50,16 @@ pub struct Configuration {
 
 /// What the judges ask about.
 #[derive(Debug, Clone)]
-pub struct Evidence {
+pub struct RadarEvidence {
     /// Scenarios 1 and 2 on each of [`PATHS`].
     pub scenarios: [[Runs; 3]; 2],
     /// Some settings of scenario 3 on each of [`PATHS`].
-    pub swept: [Vec<(Setting, Runs)>; 3],
+    pub swept: [Vec<(SweepSetting, Runs)>; 3],
     /// What the paper leaves open, choice by choice; the defaults first.
     pub configurations: Vec<Configuration>,
 }
 
-impl Evidence {
+impl RadarEvidence {
     /// Runs everything.
     ///
     /// # Errors
@@ -123,7 +123,10 @@ impl Evidence {
     /// How many settings of how many runs the sweeps are, in words.
     pub fn sweep_in_words(&self) -> String {
         let settings = &self.swept[0];
-        let all: usize = Parameter::ALL.iter().map(|parameter| parameter.values().len()).sum();
+        let all: usize = SweptParameter::ALL
+            .iter()
+            .map(|parameter| parameter.values().len())
+            .sum();
         let runs = settings.first().map_or(0, |(_, runs)| runs.0.len());
         format!(
             "Scenario 3 at {} of its {all} settings, {runs} runs each",
@@ -133,56 +136,56 @@ impl Evidence {
 }
 
 /// The first value of either parameter, then every tenth of q and every fourth of σ_θ.
-fn few_settings(trajectory: Trajectory) -> Vec<Setting> {
-    let of_parameter = |parameter: Parameter| {
+fn few_settings(trajectory: SweptTrajectory) -> Vec<SweepSetting> {
+    let of_parameter = |parameter: SweptParameter| {
         let every = match parameter {
-            Parameter::NoiseDensity => 10,
-            Parameter::BearingDegrees => 4,
+            SweptParameter::NoiseDensity => 10,
+            SweptParameter::BearingDegrees => 4,
         };
         let values = (1..).zip(parameter.values());
         let chosen = values.filter(move |(place, _)| *place == 1 || place % every == 0);
-        chosen.map(move |(_, value)| Setting {
+        chosen.map(move |(_, value)| SweepSetting {
             trajectory,
             parameter,
             value,
         })
     };
-    Parameter::ALL.into_iter().flat_map(of_parameter).collect()
+    SweptParameter::ALL.into_iter().flat_map(of_parameter).collect()
 }
 
-fn swept(runs: usize, seed: u64, progress: Progress) -> Result<[Vec<(Setting, Runs)>; 3], InvalidChoice> {
-    let of = |trajectory: Trajectory, window: &str| {
+fn swept(runs: usize, seed: u64, progress: Progress) -> Result<[Vec<(SweepSetting, Runs)>; 3], InvalidChoice> {
+    let of = |trajectory: SweptTrajectory, window: &str| {
         let sweep = Sweep::new(&Choices::of("window", window), runs, seed)?;
-        let run = |setting: Setting| (setting, Runs(outcomes(&sweep.scenario(&setting), runs, seed, progress)));
+        let run = |setting: SweepSetting| (setting, Runs(outcomes(&sweep.scenario(&setting), runs, seed, progress)));
         Ok(few_settings(trajectory).into_iter().map(run).collect())
     };
     Ok([
-        of(Trajectory::Straight, "toolbox")?,
-        of(Trajectory::Manoeuvring, "toolbox")?,
-        of(Trajectory::Manoeuvring, "printed")?,
+        of(SweptTrajectory::Straight, "toolbox")?,
+        of(SweptTrajectory::Manoeuvring, "toolbox")?,
+        of(SweptTrajectory::Manoeuvring, "printed")?,
     ])
 }
 
 /// Whether the filters of a setting know the noise.
-pub fn is_matched(setting: &Setting) -> bool {
+pub fn is_matched(setting: &SweepSetting) -> bool {
     let truth = match setting.parameter {
-        Parameter::NoiseDensity => NOISE_DENSITY,
-        Parameter::BearingDegrees => 1.0,
+        SweptParameter::NoiseDensity => NOISE_DENSITY,
+        SweptParameter::BearingDegrees => 1.0,
     };
     // Table 3 has hundredths and tenths.
     (setting.value - truth).abs() < 1e-3
 }
 
 /// A setting in words: `q = 0.01`.
-pub fn setting_in_words(setting: &Setting) -> String {
+pub fn setting_in_words(setting: &SweepSetting) -> String {
     match setting.parameter {
-        Parameter::NoiseDensity => format!("q = {}", setting.value),
-        Parameter::BearingDegrees => format!("σ_θ = {}°", setting.value),
+        SweptParameter::NoiseDensity => format!("q = {}", setting.value),
+        SweptParameter::BearingDegrees => format!("σ_θ = {}°", setting.value),
     }
 }
 
 /// The percentage fit error of a filter in one run.
-fn fit(outcome: &Outcome, filter: usize) -> Option<f64> {
+fn fit(outcome: &RunOutcome, filter: usize) -> Option<f64> {
     outcome.fit(FitForm::RootSumSquare, filter)
 }
 

@@ -4,21 +4,21 @@
 //! comparison: with the noises of scenario 2 they decide which filter is the better one.
 
 use super::evidence::{
-    CONVERTED, Evidence, PLAIN, Runs, WINDOWS, WRAPPED, clauses, less_limit, opposite, published, words,
+    CONVERTED, PLAIN, RadarEvidence, Runs, WINDOWS, WRAPPED, clauses, less_limit, opposite, published, words,
 };
 use super::straight::wrapped_and_not;
 use crate::paper::specification::Specification;
-use crate::paper::verdict::{Judgement, Verdict, all_of, below_zero_whichever, in_words, proven_if};
+use crate::paper::verdict::{JudgedClaim, Verdict, all_of, below_zero_whichever, in_words, proven_if};
 use crate::statistics::Estimate;
 use crate::statistics::estimate::figure;
 
 /// IMM-CMKF less wrapped IMM-UKF in either window.
-pub fn gaps(runs: &Evidence, scenario: usize) -> [Estimate; 2] {
+pub fn gaps(runs: &RadarEvidence, scenario: usize) -> [Estimate; 2] {
     runs.manoeuvring(scenario)
         .map(|runs| runs.difference(CONVERTED, WRAPPED))
 }
 
-pub fn better_when_manoeuvring(s: &Specification, runs: &Evidence) -> Judgement {
+pub fn better_when_manoeuvring(s: &Specification, runs: &RadarEvidence) -> JudgedClaim {
     let rows = [1, 2].map(|scenario| published(s, 5, scenario));
     let in_table = rows.iter().all(|[converted, unscented]| converted < unscented);
     let of = |scenario: usize| clauses(&WINDOWS, |path| wrapped_and_not(&runs.scenarios[scenario - 1][path]));
@@ -37,7 +37,7 @@ pub fn better_when_manoeuvring(s: &Specification, runs: &Evidence) -> Judgement 
     s.judgement("sustika2015-better-when-manoeuvring", verdict, evidence)
 }
 
-pub fn large_error_in_manoeuvres(s: &Specification, runs: &Evidence) -> Judgement {
+pub fn large_error_in_manoeuvres(s: &Specification, runs: &RadarEvidence) -> JudgedClaim {
     let gap = |runs: &Runs, filter: usize| runs.manoeuvre_less_rest(filter);
     let evidence = format!(
         "Scenario 1, root mean square position error in the steps of constant acceleration less that in the others: {}. That depends on where \
@@ -57,12 +57,12 @@ pub fn large_error_in_manoeuvres(s: &Specification, runs: &Evidence) -> Judgemen
 }
 
 /// Scenario 2 over scenario 1 with manoeuvres, less the same without.
-fn hurts_more(runs: &Evidence, path: usize, filter: usize) -> Estimate {
+fn hurts_more(runs: &RadarEvidence, path: usize, filter: usize) -> Estimate {
     let [matched, mismatched] = &runs.scenarios;
     mismatched[path].over_less(&matched[path], [&mismatched[0], &matched[0]], filter)
 }
 
-pub fn mismatch_hurts_manoeuvres(s: &Specification, runs: &Evidence) -> Judgement {
+pub fn mismatch_hurts_manoeuvres(s: &Specification, runs: &RadarEvidence) -> JudgedClaim {
     let ratio_in = |table: u32, filter: usize| published(s, table, 2)[filter] / published(s, table, 1)[filter];
     let in_table = [0, 1].iter().all(|&filter| ratio_in(5, filter) > ratio_in(4, filter));
     let both = |path: usize| {
@@ -84,7 +84,7 @@ pub fn mismatch_hurts_manoeuvres(s: &Specification, runs: &Evidence) -> Judgemen
     s.judgement("sustika2015-mismatch-hurts-manoeuvres", verdict, evidence)
 }
 
-pub fn larger_error_in_figure_3(s: &Specification, runs: &Evidence) -> Judgement {
+pub fn larger_error_in_figure_3(s: &Specification, runs: &RadarEvidence) -> JudgedClaim {
     let [converted, unscented] = published(s, 5, 2);
     let evidence = format!(
         "Table 5, which is to show it more clearly, has {converted} % for IMM-CMKF and {unscented} % for IMM-UKF, and the sentence after it says \
@@ -109,7 +109,7 @@ pub fn the_window_decides(gaps: &[Estimate; 2]) -> &'static str {
 /// "Almost the same": within a fiftieth.
 const ALMOST: f64 = 0.02;
 
-pub fn almost_the_same(s: &Specification, runs: &Evidence) -> Judgement {
+pub fn almost_the_same(s: &Specification, runs: &RadarEvidence) -> JudgedClaim {
     let [converted, unscented] = published(s, 5, 1);
     let part = converted / unscented - 1.0;
     let parts = runs.manoeuvring(1).map(|runs| runs.part(CONVERTED, WRAPPED));
@@ -136,7 +136,7 @@ pub fn almost_the_same(s: &Specification, runs: &Evidence) -> Judgement {
     s.judgement("sustika2015-almost-the-same", verdict, evidence)
 }
 
-pub fn better_in_scenario_2(s: &Specification, runs: &Evidence) -> Judgement {
+pub fn better_in_scenario_2(s: &Specification, runs: &RadarEvidence) -> JudgedClaim {
     let [converted, unscented] = published(s, 5, 2);
     let of_fifty = |path: usize, other: usize| {
         let runs = &runs.scenarios[1][path];

@@ -26,17 +26,17 @@ use super::reasoning;
 use crate::paper::Effort;
 use crate::paper::monte_carlo::Progress;
 use crate::paper::specification::{InvalidChoice, sustika2015 as specification};
-use crate::paper::verdict::Judgement;
-use evidence::Evidence;
+use crate::paper::verdict::JudgedClaim;
+use evidence::RadarEvidence;
 
 /// Judges every claim.
 ///
 /// # Errors
 ///
 /// [`InvalidChoice`] when the specification lacks an alternative that a judge asks for.
-pub fn judge(effort: Effort, progress: Progress) -> Result<Vec<Judgement>, InvalidChoice> {
+pub fn judge(effort: Effort, progress: Progress) -> Result<Vec<JudgedClaim>, InvalidChoice> {
     let s = specification();
-    let runs = Evidence::new(effort, progress)?;
+    let runs = RadarEvidence::new(effort, progress)?;
     Ok(vec![
         manoeuvring::better_when_manoeuvring(s, &runs),
         noises::more_robust(s, &runs),

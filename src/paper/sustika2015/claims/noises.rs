@@ -2,25 +2,25 @@
 //!
 //! After this file the reader knows at how many noises either filter is better, and that no run diverges whose bearings are wrapped.
 
-use super::super::divergence::Tally;
-use super::super::outcome::Outcome;
-use super::super::sweep::{Point, Setting};
+use super::super::divergence::Divergences;
+use super::super::outcome::RunOutcome;
+use super::super::sweep::{SweepPoint, SweepSetting};
 use super::super::{DEGREE, DIVERGENT_FIT_ERROR, GOOD_FIT_ERROR, RUNS};
 use super::evidence::{
-    CONVERTED, Evidence, PLAIN, Runs, WINDOWS, WRAPPED, clauses, is_matched, less_limit, setting_in_words, words,
+    CONVERTED, PLAIN, RadarEvidence, Runs, WINDOWS, WRAPPED, clauses, is_matched, less_limit, setting_in_words, words,
 };
 use crate::paper::specification::Specification;
-use crate::paper::verdict::{Judgement, Verdict, all_below_zero, confirmed_if, sign_of, whichever};
+use crate::paper::verdict::{JudgedClaim, Verdict, all_below_zero, confirmed_if, sign_of, whichever};
 use crate::statistics::Estimate;
 use crate::statistics::estimate::{figure, mean};
 use crate::statistics::fit_error::FitForm;
 use std::cmp::Ordering;
 
 /// A figure of a setting.
-type At = (Setting, Estimate);
+type At = (SweepSetting, Estimate);
 
 /// A difference of two filters at every setting, or at those that do not match.
-fn differences(swept: &[(Setting, Runs)], [a, b]: [usize; 2], matched_too: bool) -> Vec<At> {
+fn differences(swept: &[(SweepSetting, Runs)], [a, b]: [usize; 2], matched_too: bool) -> Vec<At> {
     let chosen = swept.iter().filter(|(setting, _)| matched_too || !is_matched(setting));
     chosen
         .map(|(setting, runs)| (*setting, runs.difference(a, b)))
@@ -55,7 +55,7 @@ fn at_in_words(at: Option<At>, unit: &str) -> String {
     })
 }
 
-pub fn more_robust(s: &Specification, runs: &Evidence) -> Judgement {
+pub fn more_robust(s: &Specification, runs: &RadarEvidence) -> JudgedClaim {
     let of = |path: usize, unscented: usize| differences(&runs.swept[path], [unscented, CONVERTED], false);
     let evidence = format!(
         "{}, those where the noises do not match. PFE of wrapped IMM-UKF against that of IMM-CMKF: {}. Never wrapped: {}.",
@@ -76,7 +76,7 @@ pub fn more_robust(s: &Specification, runs: &Evidence) -> Judgement {
     s.judgement("sustika2015-more-robust", all_below_zero(&all), evidence)
 }
 
-pub fn no_difference_without_manoeuvre(s: &Specification, runs: &Evidence) -> Judgement {
+pub fn no_difference_without_manoeuvre(s: &Specification, runs: &RadarEvidence) -> JudgedClaim {
     let swept = &runs.swept[0];
     let all = differences(swept, [WRAPPED, CONVERTED], true);
     let significant = all
@@ -106,7 +106,7 @@ pub fn no_difference_without_manoeuvre(s: &Specification, runs: &Evidence) -> Ju
     s.judgement("sustika2015-no-difference-without-manoeuvre", verdict, evidence)
 }
 
-pub fn mismatch_no_problem(s: &Specification, runs: &Evidence) -> Judgement {
+pub fn mismatch_no_problem(s: &Specification, runs: &RadarEvidence) -> JudgedClaim {
     let of = |filter: usize| -> Vec<At> {
         let swept = runs.swept[0].iter();
         swept.map(|(setting, runs)| (*setting, runs.fit(filter))).collect()
@@ -133,7 +133,7 @@ pub fn mismatch_no_problem(s: &Specification, runs: &Evidence) -> Judgement {
 
 /// Whether a filter diverges in a run: by the joint norm. The root of the sum of squares also exceeds the limit where the target stays near
 /// an axis, so that a small error is a large part of a small coordinate.
-fn diverges(run: &Outcome, filter: usize) -> bool {
+fn diverges(run: &RunOutcome, filter: usize) -> bool {
     run.fit(FitForm::JointNorm, filter)
         .is_some_and(|fit| fit > DIVERGENT_FIT_ERROR)
 }
@@ -151,9 +151,9 @@ struct Blocks {
     divergent: usize,
 }
 
-fn blocks(swept: &[(Setting, Runs)], filter: usize) -> Blocks {
+fn blocks(swept: &[(SweepSetting, Runs)], filter: usize) -> Blocks {
     let mut blocks = Blocks::default();
-    let fit = |run: &Outcome| run.fit(FitForm::RootSumSquare, filter);
+    let fit = |run: &RunOutcome| run.fit(FitForm::RootSumSquare, filter);
     for (_, runs) in swept {
         for block in runs.0.chunks(RUNS) {
             let divergent = block.iter().filter(|run| diverges(run, filter)).count();
@@ -191,7 +191,7 @@ impl Blocks {
     }
 }
 
-pub fn divergence(s: &Specification, runs: &Evidence) -> Judgement {
+pub fn divergence(s: &Specification, runs: &RadarEvidence) -> JudgedClaim {
     let of = |filter: usize| WINDOWS.map(|path| blocks(&runs.swept[path], filter));
     let [wrapped, plain] = [of(WRAPPED), of(PLAIN)];
     let evidence = format!(
@@ -207,22 +207,22 @@ pub fn divergence(s: &Specification, runs: &Evidence) -> Judgement {
 }
 
 /// A tally of the runs of several simulations, divergent by one of the forms.
-fn tally<'a>(simulations: impl Iterator<Item = &'a Runs>, form: FitForm) -> Tally {
+fn tally<'a>(simulations: impl Iterator<Item = &'a Runs>, form: FitForm) -> Divergences {
     let mut runs = 0;
     let of = |simulation: &Runs| {
         runs = simulation.0.len();
-        Point::of(&simulation.0, form)
+        SweepPoint::of(&simulation.0, form)
     };
-    let points: Vec<Point> = simulations.map(of).collect();
-    Tally::of(points.iter(), runs)
+    let points: Vec<SweepPoint> = simulations.map(of).collect();
+    Divergences::of(points.iter(), runs)
 }
 
 /// Where the two unscented filters part in runs without a jump, and which of these diverge.
 fn without_jump(scenarios: &[[Runs; 3]; 2]) -> String {
     let all = scenarios.iter().flatten().flat_map(|runs| &runs.0);
-    let quiet: Vec<&Outcome> = all.filter(|run| !run.jumps).collect();
-    let apart: Vec<&Outcome> = quiet.iter().copied().filter(|run| run.apart > THE_SAME).collect();
-    let greatest = |of: fn(&Outcome) -> f64| apart.iter().map(|run| of(run)).fold(0.0, f64::max);
+    let quiet: Vec<&RunOutcome> = all.filter(|run| !run.jumps).collect();
+    let apart: Vec<&RunOutcome> = quiet.iter().copied().filter(|run| run.apart > THE_SAME).collect();
+    let greatest = |of: fn(&RunOutcome) -> f64| apart.iter().map(|run| of(run)).fold(0.0, f64::max);
     format!(
         "In the {} of these runs without a jump the two unscented filters agree to a millimetre in all but {}, which differ by up to {} m and \
          of which {} diverge: their measured bearings come within {}° of the negative x-axis, and what the filter expects goes beyond.",
@@ -237,7 +237,7 @@ fn without_jump(scenarios: &[[Runs; 3]; 2]) -> String {
 /// Estimates nearer than this are called the same, m: some orders above what roundings do, and below what any filter is good for.
 const THE_SAME: f64 = 1e-3;
 
-pub fn cause_of_divergence(s: &Specification, runs: &Evidence) -> Judgement {
+pub fn cause_of_divergence(s: &Specification, runs: &RadarEvidence) -> JudgedClaim {
     let scenarios = || runs.scenarios.iter().flatten();
     let both = tally(scenarios(), FitForm::JointNorm);
     let matched = tally(runs.scenarios[0].iter(), FitForm::JointNorm);

@@ -4,9 +4,9 @@
 //! standard errors of as many runs as the paper has; and whether the two columns of a table can be of the same runs.
 
 use super::super::RUNS;
-use super::evidence::{CONVERTED, Configuration, Evidence, published};
+use super::evidence::{CONVERTED, Configuration, RadarEvidence, published};
 use crate::paper::specification::Specification;
-use crate::paper::verdict::{DECISIVE, Judgement, Verdict};
+use crate::paper::verdict::{DECISIVE, JudgedClaim, Verdict};
 use crate::statistics::Estimate;
 use crate::statistics::estimate::{figure, mean};
 use crate::statistics::fit_error::FitForm;
@@ -41,7 +41,7 @@ fn compare(s: &Specification, configuration: &Configuration, form: FitForm, form
                 deviations.push(-computed.distance_from(published) / (count as f64).sqrt());
             }
             let of_run =
-                |run: &super::super::outcome::Outcome| Some(run.fit(form, filters[0])? - run.fit(form, filters[1])?);
+                |run: &super::super::outcome::RunOutcome| Some(run.fit(form, filters[0])? - run.fit(form, filters[1])?);
             let gap = mean(&runs.0.iter().filter_map(of_run).collect::<Vec<f64>>());
             gaps.push(distance(gap, published[0] - published[1], count));
         }
@@ -72,7 +72,7 @@ fn listed(distances: &[f64]) -> String {
 }
 
 /// Every configuration with every reading of (39), the defaults first.
-fn all_matches(s: &Specification, runs: &Evidence) -> Vec<Match> {
+fn all_matches(s: &Specification, runs: &RadarEvidence) -> Vec<Match> {
     let names = [
         "root of the sum of squares",
         "joint norm",
@@ -88,7 +88,7 @@ fn all_matches(s: &Specification, runs: &Evidence) -> Vec<Match> {
 }
 
 /// How far single runs scatter in scenario 1 of table 4, with the truth drawn in this way, %.
-fn scatter(runs: &Evidence, truth: Option<&str>) -> f64 {
+fn scatter(runs: &RadarEvidence, truth: Option<&str>) -> f64 {
     let of_truth = |configuration: &&Configuration| configuration.choices.chosen("truth") == truth;
     let found = runs.configurations.iter().find(of_truth);
     found.map_or(f64::NAN, |configuration| {
@@ -97,7 +97,7 @@ fn scatter(runs: &Evidence, truth: Option<&str>) -> f64 {
     })
 }
 
-pub fn tables_reachable(s: &Specification, runs: &Evidence) -> Judgement {
+pub fn tables_reachable(s: &Specification, runs: &RadarEvidence) -> JudgedClaim {
     let mut matches = all_matches(s, runs);
     let default = matches.first().map_or_else(String::new, |first| {
         let (straight, manoeuvring) = first.figures.split_at(4);

@@ -3,15 +3,15 @@
 //! After this file the reader knows that the paper reads its table 4 the wrong way round, and what of the table is in the runs.
 
 use super::super::GOOD_FIT_ERROR;
-use super::evidence::{CONVERTED, Configuration, Evidence, PLAIN, Runs, WRAPPED, less_limit, published, words};
+use super::evidence::{CONVERTED, Configuration, PLAIN, RadarEvidence, Runs, WRAPPED, less_limit, published, words};
 use crate::paper::specification::Specification;
-use crate::paper::verdict::{Judgement, all_below_zero, all_of, below_zero_whichever, in_words, proven_if, sign_of};
+use crate::paper::verdict::{JudgedClaim, all_below_zero, all_of, below_zero_whichever, in_words, proven_if, sign_of};
 use crate::statistics::Estimate;
 use crate::statistics::fit_error::FitForm;
 use std::cmp::Ordering;
 use std::fmt::Write;
 
-pub fn better_without_mismatch(s: &Specification, runs: &Evidence) -> Judgement {
+pub fn better_without_mismatch(s: &Specification, runs: &RadarEvidence) -> JudgedClaim {
     let [first, second] = [1, 2].map(|scenario| published(s, 4, scenario));
     let in_table = first.iter().zip(&second).all(|(first, second)| first < second);
     let gaps = [CONVERTED, WRAPPED].map(|filter| runs.straight(1).less(filter, runs.straight(2), filter));
@@ -56,7 +56,7 @@ pub fn wrapped_and_not(runs: &Runs) -> String {
     )
 }
 
-pub fn better_on_all_scenarios(s: &Specification, runs: &Evidence) -> Judgement {
+pub fn better_on_all_scenarios(s: &Specification, runs: &RadarEvidence) -> JudgedClaim {
     let rows = [1, 2].map(|scenario| published(s, 4, scenario));
     let in_table = rows.iter().all(|[converted, unscented]| converted < unscented);
     let gap = |[converted, unscented]: [f64; 2]| {
@@ -76,7 +76,7 @@ pub fn better_on_all_scenarios(s: &Specification, runs: &Evidence) -> Judgement 
     s.judgement("sustika2015-better-on-all-scenarios", proven_if(in_table), evidence)
 }
 
-pub fn below_three_per_cent(s: &Specification, runs: &Evidence) -> Judgement {
+pub fn below_three_per_cent(s: &Specification, runs: &RadarEvidence) -> JudgedClaim {
     let printed = [1, 2].map(|scenario| published(s, 4, scenario)).concat();
     let greatest = printed.iter().copied().fold(0.0, f64::max);
     let mut evidence = format!(
