@@ -11,8 +11,8 @@ use immaculate::imm::Equations;
 use immaculate::model::{Conversion, PolarComponent, Sensor};
 use immaculate::paper::comparison::ErrorQuantity;
 use immaculate::paper::derbez2000::contestants::Coordinates;
-use immaculate::paper::derbez2000::contestants::MeasurementNoise as Variance;
-use immaculate::paper::derbez2000::path::{PlaneState, Regime as Leg};
+use immaculate::paper::derbez2000::contestants::MeasurementNoise;
+use immaculate::paper::derbez2000::path::{PlaneState, Regime};
 use immaculate::paper::derbez2000::scenario::{follow, track as track_coordinates};
 use immaculate::paper::derbez2000::{self, contestants::Reading, radar};
 use immaculate::paper::monte_carlo::Generator;
@@ -224,7 +224,7 @@ fn every_alternative_of_derbez2000_means_what_its_sentence_says() {
                     .iter()
                     .map(|contestant| contestant.follows_noise)
                     .collect();
-                s.setup.noise == Variance::OfEachMeasurement && follow == [true, false, true]
+                s.setup.noise == MeasurementNoise::OfEachMeasurement && follow == [true, false, true]
             }),
             ("measurement-variance", "range", |s, _| noises(s) == [[0.0025; 2]; 3]),
             ("measurement-variance", "0-05", |s, _| noises(s) == [[0.05; 2]; 3]),
@@ -662,43 +662,21 @@ fn choices_are_read_as_they_are_written_and_checked_against_the_paper() {
 
 #[test]
 fn a_row_of_a_table_is_of_one_simulation_and_one_figure() {
+    use ErrorQuantity::{Position, Velocity, VelocityX, VelocityY, X, Y};
     let of_error = |quantity| Some(Figure::Error(quantity));
+    let default = Choices::default;
     let scenario = |name: &str| Choices::of("scenario", name);
     for (paper, choices, table, row, expected) in [
-        (
-            Paper::Derbez2000,
-            Choices::default(),
-            1,
-            "x-RMS",
-            of_error(ErrorQuantity::X),
-        ),
-        (
-            Paper::Derbez2000,
-            Choices::default(),
-            1,
-            "y-RMS",
-            of_error(ErrorQuantity::Y),
-        ),
-        (
-            Paper::Derbez2000,
-            Choices::default(),
-            1,
-            "Overall",
-            of_error(ErrorQuantity::Position),
-        ),
-        (Paper::Derbez2000, Choices::default(), 1, "Cost/flops", None),
+        (Paper::Derbez2000, default(), 1, "x-RMS", of_error(X)),
+        (Paper::Derbez2000, default(), 1, "y-RMS", of_error(Y)),
+        (Paper::Derbez2000, default(), 1, "Overall", of_error(Position)),
+        (Paper::Derbez2000, default(), 1, "Cost/flops", None),
         // Table 2 is of scenario 3, and scenario 1 has none.
-        (Paper::Derbez2000, Choices::default(), 2, "x-RMS", None),
+        (Paper::Derbez2000, default(), 2, "x-RMS", None),
         (Paper::Derbez2000, scenario("acceleration"), 1, "x-RMS", None),
-        (
-            Paper::Sustika2015,
-            Choices::default(),
-            4,
-            "1st scenario",
-            Some(Figure::FitError),
-        ),
-        (Paper::Sustika2015, Choices::default(), 4, "2nd scenario", None),
-        (Paper::Sustika2015, Choices::default(), 5, "1st scenario", None),
+        (Paper::Sustika2015, default(), 4, "1st scenario", Some(Figure::FitError)),
+        (Paper::Sustika2015, default(), 4, "2nd scenario", None),
+        (Paper::Sustika2015, default(), 5, "1st scenario", None),
         (
             Paper::Sustika2015,
             scenario("mismatched-straight"),
@@ -727,50 +705,14 @@ fn a_row_of_a_table_is_of_one_simulation_and_one_figure() {
             "2nd scenario",
             None,
         ),
-        (
-            Paper::Zhu2016,
-            Choices::default(),
-            1,
-            "RMSE_X",
-            of_error(ErrorQuantity::X),
-        ),
-        (
-            Paper::Zhu2016,
-            Choices::default(),
-            1,
-            "RMSE_X_V",
-            of_error(ErrorQuantity::VelocityX),
-        ),
-        (
-            Paper::Zhu2016,
-            Choices::default(),
-            1,
-            "RMSE_Y",
-            of_error(ErrorQuantity::Y),
-        ),
-        (
-            Paper::Zhu2016,
-            Choices::default(),
-            1,
-            "RMSE_Y_V",
-            of_error(ErrorQuantity::VelocityY),
-        ),
-        (Paper::Zhu2016, Choices::default(), 1, "Time", None),
-        (
-            Paper::Liu2017,
-            Choices::default(),
-            1,
-            "Position ARMSE",
-            of_error(ErrorQuantity::Position),
-        ),
-        (
-            Paper::Liu2017,
-            Choices::default(),
-            1,
-            "Velocity ARMSE",
-            of_error(ErrorQuantity::Velocity),
-        ),
-        (Paper::Liu2017, Choices::default(), 2, "Number of Points", None),
+        (Paper::Zhu2016, default(), 1, "RMSE_X", of_error(X)),
+        (Paper::Zhu2016, default(), 1, "RMSE_X_V", of_error(VelocityX)),
+        (Paper::Zhu2016, default(), 1, "RMSE_Y", of_error(Y)),
+        (Paper::Zhu2016, default(), 1, "RMSE_Y_V", of_error(VelocityY)),
+        (Paper::Zhu2016, default(), 1, "Time", None),
+        (Paper::Liu2017, default(), 1, "Position ARMSE", of_error(Position)),
+        (Paper::Liu2017, default(), 1, "Velocity ARMSE", of_error(Velocity)),
+        (Paper::Liu2017, default(), 2, "Number of Points", None),
     ] {
         assert_eq!(
             paper.figure_of_row(&choices, table, row),
@@ -1248,7 +1190,7 @@ fn falls(k: i32, sign: f64) -> Vector3<f64> {
 /// Whether the turn is one by so many degrees, and at the rate that its acceleration says.
 fn turned(scenario: &derbez2000::scenario::CoordinateScenario, degrees: f64) -> bool {
     let turning: Vec<usize> = (0..scenario.path.motions.len())
-        .filter(|k| scenario.path.motions[*k] == Leg::Turn)
+        .filter(|k| scenario.path.motions[*k] == Regime::Turn)
         .collect();
     assert_eq!(turning, (20..50).collect::<Vec<_>>());
     let velocity = |k: usize| Vector2::new(scenario.path.places[k][0][1], scenario.path.places[k][1][1]);

@@ -22,7 +22,7 @@ use immaculate::paper::sustika2015::divergence::{self, Divergences};
 use immaculate::paper::sustika2015::outcome::{RunOutcome, Track, outcomes};
 use immaculate::paper::sustika2015::scenario::RadarScenario;
 use immaculate::paper::sustika2015::sweep::{
-    self, Fit, Sweep, SweepPoint, SweepSetting, SweptParameter, SweptTrajectory as Swept, columns, line, settings,
+    self, Fit, Sweep, SweepPoint, SweepSetting, SweptParameter, SweptTrajectory, columns, line, settings,
 };
 use immaculate::paper::sustika2015::truth::{Manoeuvre, Trajectory, TruthNoise, bearing_jumps};
 use immaculate::paper::sustika2015::{
@@ -615,8 +615,8 @@ fn the_settings_are_those_of_table_3() {
 fn a_setting_with_the_parameters_of_the_truth_is_the_first_scenario() {
     let sweep = Sweep::new(&Choices::default(), 3, 1).unwrap();
     for (trajectory, name) in [
-        (Swept::Straight, "matched-straight"),
-        (Swept::Manoeuvring, "matched-manoeuvring"),
+        (SweptTrajectory::Straight, "matched-straight"),
+        (SweptTrajectory::Manoeuvring, "matched-manoeuvring"),
     ] {
         let first = sweep::point(&of(name), 3, 1, &|| ());
         for (parameter, value) in [
@@ -744,7 +744,7 @@ fn a_sweep_runs_every_setting_in_order_and_counts_every_run() {
 fn a_column_of_the_table_holds_what_it_is_called() {
     let sweep = Sweep::new(&Choices::default(), 3, 1).unwrap();
     let setting = SweepSetting {
-        trajectory: Swept::Manoeuvring,
+        trajectory: SweptTrajectory::Manoeuvring,
         parameter: SweptParameter::BearingDegrees,
         value: 4.0,
     };

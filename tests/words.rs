@@ -18,7 +18,7 @@ use immaculate::oracle::problem::FilterFile;
 use immaculate::oracle::subject::{Broken, Precision, Ready};
 use immaculate::oracle::trace::{Dimensions, Trace};
 use immaculate::oracle::variant::{self, Variant};
-use immaculate::paper::comparison::ErrorQuantity as Measured;
+use immaculate::paper::comparison::ErrorQuantity;
 use immaculate::paper::result::{
     Consistency, Delay, Difference, ErrorFigure, ErrorHistory, FailedRun, FirstRun, FitDifference, Performance,
     Reproduction,
@@ -26,7 +26,7 @@ use immaculate::paper::result::{
 use immaculate::paper::specification::Choices;
 use immaculate::paper::sustika2015::divergence::DivergenceRow;
 use immaculate::paper::sustika2015::sweep::{Fit, SweepPoint, SweepSetting, SweptParameter, SweptTrajectory};
-use immaculate::paper::verdict::{JudgedClaim as Claim, Verdict as Answer};
+use immaculate::paper::verdict::{JudgedClaim, Verdict};
 use immaculate::paper::{Effort, Paper};
 use immaculate::report;
 use immaculate::report::long_term::{Panel, heat_maps};
@@ -406,14 +406,14 @@ fn the_open_choices_of_each_paper() {
 #[test]
 fn claims_with_every_verdict() {
     let verdicts = [
-        Answer::Proven,
-        Answer::Confirmed,
-        Answer::Refuted,
-        Answer::Undecided,
-        Answer::NotReproducible,
-        Answer::Refuted,
+        Verdict::Proven,
+        Verdict::Confirmed,
+        Verdict::Refuted,
+        Verdict::Undecided,
+        Verdict::NotReproducible,
+        Verdict::Refuted,
     ];
-    let claims = verdicts.map(|verdict| Claim {
+    let claims = verdicts.map(|verdict| JudgedClaim {
         id: format!("a-{}-claim", verdict.words().replace(' ', "-")),
         quote: "the proposed algorithm is better".into(),
         place: "section 4".into(),
@@ -539,8 +539,8 @@ fn reproduction(paper: Paper, choices: Choices) -> Reproduction {
         filters,
         // Above what rounding leaves, and below it.
         differences: vec![
-            difference(Measured::Position, 1.5),
-            difference(Measured::Velocity, 1e-13),
+            difference(ErrorQuantity::Position, 1.5),
+            difference(ErrorQuantity::Velocity, 1e-13),
         ],
         fit_differences: Vec::from_iter((paper == Paper::Sustika2015).then_some(fit_difference)),
     }
@@ -571,7 +571,7 @@ fn performance(paper: Paper, name: &str, number: usize) -> Performance {
         effective_points: (!is_first).then_some(7 + number),
         completed_runs: 20,
         failures: failures(if is_first { 5 } else { 0 }),
-        errors: Measured::ALL
+        errors: ErrorQuantity::ALL
             .iter()
             .map(|quantity| ErrorFigure {
                 quantity: *quantity,
@@ -580,8 +580,8 @@ fn performance(paper: Paper, name: &str, number: usize) -> Performance {
             .collect(),
         fit_error: (paper == Paper::Sustika2015).then(|| estimate(1.5 + number as f64)),
         rmse: vec![
-            history(Measured::Position, value),
-            history(Measured::Velocity, value / 4.0),
+            history(ErrorQuantity::Position, value),
+            history(ErrorQuantity::Velocity, value / 4.0),
         ],
         mode_probabilities: vec![vec![0.75, 0.25], vec![0.125, 0.875]],
         mode_probability_standard_errors: vec![vec![0.01, 0.02], vec![0.03, 0.04]],
@@ -722,7 +722,7 @@ fn equations_in_a_table() {
 
 #[test]
 fn the_words_of_the_page() {
-    let judgement = |verdict| Claim {
+    let judgement = |verdict| JudgedClaim {
         id: "a-claim".into(),
         quote: "it is better".into(),
         place: "section 4".into(),
@@ -742,7 +742,7 @@ fn the_words_of_the_page() {
                 ]
             })
             .collect(),
-        judgements: vec![judgement(Answer::Proven), judgement(Answer::Refuted)],
+        judgements: vec![judgement(Verdict::Proven), judgement(Verdict::Refuted)],
     };
     let content = Content {
         extent: Extent {
