@@ -922,7 +922,7 @@ fn a_filter_does_not_go_on_with_gains_of_the_other_kind() {
         let mut filter = scene.filter().unwrap();
         for (z, expected) in scene.measurements.iter().zip(scene.run()) {
             let refused = filter.change(other.problem.clone());
-            assert_eq!(refused, Err(InvalidProblem::SomeGiven));
+            assert_eq!(refused, Err(InvalidProblem::OtherKind));
             assert_eq!(filter.problem(), &scene.problem);
             let step = filter.step(z.as_ref()).unwrap();
             assert_eq!(step.combined.mean, expected.combined.mean);
@@ -1744,6 +1744,7 @@ fn problem_test(error: &InvalidProblem) -> &'static str {
         InvalidProblem::NotLinear { .. } => "the_kalman_filter_has_linear_measurements_only",
         InvalidProblem::NothingToDrawFrom => "a_filter_with_a_given_gain_draws_no_points",
         InvalidProblem::SomeGiven => "gains_are_given_to_all_modes_or_to_none",
+        InvalidProblem::OtherKind => "a_filter_does_not_go_on_with_gains_of_the_other_kind",
         InvalidProblem::CovarianceGiven { .. } => "a_filter_with_fixed_gains_has_no_covariance",
         InvalidProblem::RuleLengths { .. } => "a_rule_has_one_weight_a_point",
         InvalidProblem::TwoConversions => "all_modes_that_convert_do_it_in_one_way",

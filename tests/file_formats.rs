@@ -421,10 +421,10 @@ fn wrong_values() -> Vec<Defect> {
         (
             LINEAR,
             "/format",
-            json!("immaculate-problem/2"),
+            json!("immaculate-problem/3"),
             Format,
             "problem.format",
-            "this program reads \"immaculate-problem/1\"",
+            "this program reads \"immaculate-problem/1\" and \"immaculate-problem/2\"",
         ),
         (
             LINEAR,

@@ -197,7 +197,7 @@ fn sentences_are_short_and_plain() {
         "{sentence:.200}"
     );
     assert!(
-        sentence.ends_with("but this program reads \"immaculate-problem/1\""),
+        sentence.ends_with("but this program reads \"immaculate-problem/1\" and \"immaculate-problem/2\""),
         "{sentence:.200}"
     );
 }

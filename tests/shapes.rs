@@ -215,12 +215,12 @@ fn a_state_without_components_or_with_too_many_is_refused() {
     let mut file = serde_json::to_value(problem(2, 1, &kalman())).unwrap();
     file["state"] = json!([]);
     let refused = ProblemFile::read(&file.to_string()).unwrap_err().to_string();
-    assert_eq!(refused, "problem.state has 0 components; there must be 1 to 32");
+    assert_eq!(refused, "problem.state: has 0 components; there must be 1 to 32");
     file["state"] = json!(vec!["x"; 33]);
     let refused = ProblemFile::read(&file.to_string()).unwrap_err().to_string();
-    assert_eq!(refused, "problem.state has 33 components; there must be 1 to 32");
+    assert_eq!(refused, "problem.state: has 33 components; there must be 1 to 32");
     file = serde_json::to_value(problem(2, 1, &kalman())).unwrap();
     file["R"] = json!(vec![vec![0.0; 17]; 17]);
     let refused = ProblemFile::read(&file.to_string()).unwrap_err().to_string();
-    assert_eq!(refused, "problem.R has 17 components; there must be 1 to 16");
+    assert_eq!(refused, "problem.R: has 17 components; there must be 1 to 16");
 }

@@ -18,7 +18,7 @@ use immaculate::paper::derbez2000::{self, contestants::Reading, radar};
 use immaculate::paper::monte_carlo::Generator;
 use immaculate::paper::result::Figure;
 use immaculate::paper::scenario::track;
-use immaculate::paper::scenario::{Contestant, Motion, Scenario};
+use immaculate::paper::scenario::{Contestant, Course, Scenario};
 use immaculate::paper::simulation::Average;
 use immaculate::paper::simulation::Simulation;
 use immaculate::paper::specification::Choices;
@@ -124,7 +124,7 @@ fn every_alternative_of_zhu2016_means_what_its_sentence_says() {
             }),
             ("initial-estimate", "drawn", |s, _| s.draws_initial_estimate),
             ("switch-instants", "from-21-to-40", |s, _| {
-                turns(s) == [(Motion::RightTurn, 21.0, 40.0), (Motion::LeftTurn, 61.0, 80.0)]
+                turns(s) == [(Course::RightTurn, 21.0, 40.0), (Course::LeftTurn, 61.0, 80.0)]
             }),
             ("unscented", "kappa-0", |s, _| rule(s, 2) == Some(unscented(1, 1, 0, 0))),
             ("unscented", "scaled", |s, _| {
@@ -168,7 +168,7 @@ fn every_alternative_of_liu2017_means_what_its_sentence_says() {
                 s.initial_state == earlier && s.schedule[1..] == d.schedule && s.first_time == 1.0
             }),
             ("turn-intervals", "from-22-to-71", |s, _| {
-                turns(s) == [(Motion::RightTurn, 22.0, 71.0), (Motion::LeftTurn, 122.0, 171.0)]
+                turns(s) == [(Course::RightTurn, 22.0, 71.0), (Course::LeftTurn, 122.0, 171.0)]
             }),
             ("unscented", "kappa-half", |s, _| {
                 rule(s, 0).is_some_and(|rule| rule.weights.iter().all(|w| *w == 1.0 / 9.0))
@@ -741,12 +741,12 @@ fn on_a_circle(state: &Vector4<f64>, rate: f64) -> Vector4<f64> {
 }
 
 /// Where a second of a motion leads without noise.
-fn moved(motion: Motion, [x, vx, y, vy]: [f64; 4]) -> Vector4<f64> {
+fn moved(motion: Course, [x, vx, y, vy]: [f64; 4]) -> Vector4<f64> {
     let rate = 3.0_f64.to_radians();
     match motion {
-        Motion::Straight => Vector4::new(x + vx, vx, y + vy, vy),
-        Motion::LeftTurn => on_a_circle(&Vector4::new(x, vx, y, vy), rate),
-        Motion::RightTurn => on_a_circle(&Vector4::new(x, vx, y, vy), -rate),
+        Course::Straight => Vector4::new(x + vx, vx, y + vy, vy),
+        Course::LeftTurn => on_a_circle(&Vector4::new(x, vx, y, vy), rate),
+        Course::RightTurn => on_a_circle(&Vector4::new(x, vx, y, vy), -rate),
     }
 }
 
@@ -805,11 +805,11 @@ fn the_targets_turn_when_and_where_the_papers_say() {
     let turns_of = |paper: Paper| turns(&paper.scenario(&Choices::default()).unwrap());
     assert_eq!(
         turns_of(Paper::Zhu2016),
-        [(Motion::RightTurn, 20.0, 39.0), (Motion::LeftTurn, 60.0, 79.0)]
+        [(Course::RightTurn, 20.0, 39.0), (Course::LeftTurn, 60.0, 79.0)]
     );
     assert_eq!(
         turns_of(Paper::Liu2017),
-        [(Motion::RightTurn, 21.0, 70.0), (Motion::LeftTurn, 121.0, 170.0)]
+        [(Course::RightTurn, 21.0, 70.0), (Course::LeftTurn, 121.0, 170.0)]
     );
     // Twenty seconds at 3°/s and fifty: 60° and 150°, first clockwise, then back.
     for (paper, degrees) in [(Paper::Zhu2016, 60.0), (Paper::Liu2017, 150.0)] {
@@ -1126,12 +1126,12 @@ fn chain(scenario: &Scenario) -> Vec<Vec<f64>> {
 }
 
 /// Each turn with the times of the first and the last state that it reaches.
-fn turns(scenario: &Scenario) -> Vec<(Motion, f64, f64)> {
-    let mut turns: Vec<(Motion, f64, f64)> = Vec::new();
+fn turns(scenario: &Scenario) -> Vec<(Course, f64, f64)> {
+    let mut turns: Vec<(Course, f64, f64)> = Vec::new();
     for (motion, time) in scenario.schedule.iter().zip(scenario.times()) {
         match turns.last_mut() {
             Some((last, _, end)) if last == motion && *end + 1.0 == time => *end = time,
-            _ if *motion != Motion::Straight => turns.push((*motion, time, time)),
+            _ if *motion != Course::Straight => turns.push((*motion, time, time)),
             _ => {}
         }
     }

@@ -16,7 +16,7 @@ use immaculate::paper::result::{Figure, Reproduction};
 use immaculate::paper::scenario::Scenario;
 use immaculate::paper::simulation::Average;
 use immaculate::paper::simulation::Run;
-use immaculate::paper::simulation::{Filter, Path, Simulation};
+use immaculate::paper::simulation::{Competitor, Path, Simulation};
 use immaculate::paper::specification::Choices;
 use immaculate::statistics::Estimate;
 use immaculate::statistics::consistency::{bounds, nees, nis};
@@ -629,8 +629,8 @@ impl Simulation for ByHand {
     fn components(&self) -> (f64, f64) {
         (4.0, 2.0)
     }
-    fn filters(&self) -> Vec<Filter> {
-        let filter = |name: &str, modes: &[&str], points| Filter {
+    fn filters(&self) -> Vec<Competitor> {
+        let filter = |name: &str, modes: &[&str], points| Competitor {
             name: name.to_owned(),
             modes: modes.iter().map(|mode| (*mode).to_owned()).collect(),
             points,

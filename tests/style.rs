@@ -94,7 +94,7 @@ fn every_file_begins_with_a_sentence_that_says_what_it_is() {
             .collect();
         let sentence = paragraph.join(" ");
         assert!(
-            sentence.len() >= 20 && sentence.ends_with(['.', ':']),
+            sentence.len() >= 20 && sentence.ends_with(['.', ':', '?']),
             "{}: the head is {sentence:?}",
             file.path
         );

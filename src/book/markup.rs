@@ -32,11 +32,11 @@ fn text_of<'a>(events: impl Iterator<Item = Event<'a>>) -> String {
 }
 
 /// A row of a table: what stands in each of its cells.
-pub type Row<'a> = Vec<Vec<Event<'a>>>;
+pub type MarkdownRow<'a> = Vec<Vec<Event<'a>>>;
 
 /// The rows of the tables of a doc comment; the first is the header.
-pub fn cells<'a>(markdown: &'a str, of: &Item) -> Vec<Row<'a>> {
-    let mut rows: Vec<Row> = Vec::new();
+pub fn cells<'a>(markdown: &'a str, of: &Item) -> Vec<MarkdownRow<'a>> {
+    let mut rows: Vec<MarkdownRow> = Vec::new();
     for event in events(markdown, of) {
         match event {
             Event::Start(Tag::TableHead | Tag::TableRow) => rows.push(Vec::new()),

@@ -25,7 +25,7 @@ pub mod source;
 use crate::imm::Quantity;
 use crate::oracle::variant::{Applies, Kind, Variant, catalogue};
 use crate::paper::Paper;
-use crate::paper::specification::{Equation, Specification};
+use crate::paper::specification::{PublishedEquation, Specification};
 use doc::{Doc, Named};
 use markup::plain;
 use reference::EquationReference;
@@ -63,7 +63,7 @@ pub struct Entry {
     /// Its number or name.
     pub reference: EquationReference,
     /// Its row in `spec/`.
-    pub equation: &'static Equation,
+    pub equation: &'static PublishedEquation,
     /// The items that realise it.
     pub realisations: Vec<&'static Realisation>,
     /// The tests that hold it.
@@ -140,7 +140,7 @@ pub fn realisations() -> &'static [Realisation] {
     &REALISATIONS
 }
 
-fn entry(paper: Paper, equation: &'static Equation) -> Entry {
+fn entry(paper: Paper, equation: &'static PublishedEquation) -> Entry {
     let number = equation.number.map(|number| number.to_string());
     let label = number.or_else(|| equation.name.clone()).unwrap_or_default();
     let reference = EquationReference::new(paper, label);
@@ -161,7 +161,7 @@ fn entry(paper: Paper, equation: &'static Equation) -> Entry {
 }
 
 /// The tests that the items name, then those of the items that they refer to, then the erratum's.
-fn evidence(equation: &Equation, realisations: &[&Realisation]) -> Vec<TestEvidence> {
+fn evidence(equation: &PublishedEquation, realisations: &[&Realisation]) -> Vec<TestEvidence> {
     let mut named: Vec<Named> = Vec::new();
     for realisation in realisations {
         named.extend(evidence_of_item(realisation, 0));
@@ -222,7 +222,7 @@ fn kind_of_file(path: &str) -> String {
 
 /// The mistakes and conventions of an equation: those that its row names, or all of its quantities that can be made where it is used. What
 /// is done to the equation itself comes before what it is given wrongly.
-fn mistakes(specification: &Specification, equation: &Equation) -> Vec<&'static Variant> {
+fn mistakes(specification: &Specification, equation: &PublishedEquation) -> Vec<&'static Variant> {
     let everywhere = [Applies::All, Applies::SeveralModes, Applies::Missed];
     let used = equation.applies.as_ref().unwrap_or(&specification.applies);
     let is_used = |applies: Applies| everywhere.contains(&applies) || used.iter().any(|name| name == applies.name());

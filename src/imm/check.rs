@@ -45,7 +45,6 @@ where
     /// let error = problem.check(&initial).unwrap_err();
     /// assert_eq!(error.to_string(), "`transition[0]` sums to 0.75; it must sum to 1 (zhu2016 (54))");
     /// ```
-    /// use immaculate::filter::Filter;
     ///
     /// # Errors
     ///

@@ -9,6 +9,7 @@
 //! ```
 
 use super::failure::{Cause, Failure, failure, not_definite};
+use super::observer::Observer;
 use super::record::Quantity;
 use super::{Equations, Initial, InvalidProblem, Problem, Step};
 use crate::matrix::{Holds, Shapes, all_finite, is_finite};
@@ -16,64 +17,13 @@ use crate::model::PolarComponent;
 use crate::number::{Field, Real};
 use nalgebra::{Dim, OVector};
 
-/// Is told of every traced value of a step, in the order in which they are computed, and may put others in their place: what
-/// follows is then computed from these.
-///
-/// The filter that nobody observes has the observer `()`, which does nothing and costs nothing.
-///
-/// Example: what is computed in a step, by name.
-///
-/// ```
-/// use immaculate::{gaussian::Gaussian, imm::{Equations, Imm, Initial, Observer, Problem, Quantity, Step}};
-/// use immaculate::model::{Sensor, motion::{Mode, Motion}};
-/// use nalgebra::{matrix, vector};
-///
-/// struct Names(Vec<&'static str>);
-/// impl Observer<f64, 1, 1> for Names {
-///     fn computed(&mut self, quantity: Quantity, _mode: usize, _now: &mut Step<f64, 1, 1>) {
-///         self.0.push(quantity.name());
-///     }
-/// }
-///
-/// let problem = Problem {
-///     modes: vec![Mode { name: "walk".into(), motion: Motion::Linear(matrix![1.0]), noise: matrix![1.0] }],
-///     chain: vec![vec![1.0]],
-///     sensor: Sensor::Linear(matrix![1.0]),
-///     measurement_noise: matrix![2.0],
-///     filters: vec![Filter::kalman()],
-///     interaction: Interaction::Imm,
-/// };
-/// let initial = Initial {
-///     modes: vec![Gaussian { mean: vector![0.0], covariance: matrix![1.0] }],
-///     mode_probabilities: vec![1.0],
-/// };
-/// let mut names = Names(Vec::new());
-/// Imm::new(problem, &initial)?.step_observed(None, &mut names)?;
-/// assert_eq!(names.0[2..6], ["mixed.mean", "mixed.covariance", "predicted.mean", "predicted.covariance"]);
-/// assert!(!names.0.contains(&"gain")); // without a detection
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub trait Observer<T: Field, N: Dim, M: Dim>
-where
-    Shapes: Holds<N, M>,
-{
-    /// The quantity of mode j (0 for a quantity of all modes together) has just been computed and stands in the record.
-    fn computed(&mut self, quantity: Quantity, j: usize, now: &mut Step<T, N, M>);
-}
-
-impl<T: Field, N: Dim, M: Dim> Observer<T, N, M> for ()
-where
-    Shapes: Holds<N, M>,
-{
-    fn computed(&mut self, _: Quantity, _: usize, _: &mut Step<T, N, M>) {}
-}
-
 /// The filter: a problem, a table of equations, and the step before and now.
 ///
 /// Example: a scalar random walk with one mode, which is a Kalman filter.
 ///
 /// ```
-/// use immaculate::{gaussian::Gaussian, imm::{Equations, Imm, Initial, Problem}};
+/// use immaculate::filter::Filter;
+/// use immaculate::{gaussian::Gaussian, imm::{Imm, Initial, Interaction, Problem}};
 /// use immaculate::model::{Sensor, motion::{Mode, Motion}};
 /// use nalgebra::{matrix, vector};
 ///
@@ -219,13 +169,14 @@ where
         };
         problem.check_inputs(&estimates)?;
         if problem.has_covariances() != self.problem.has_covariances() {
-            return Err(InvalidProblem::SomeGiven);
+            return Err(InvalidProblem::OtherKind);
         }
         self.problem = problem;
         Ok(())
     }
 
     /// As [`Imm::change`], with a problem that may be wrong on purpose.
+    #[cfg(feature = "oracle")]
     pub(crate) fn change_unchecked(&mut self, problem: &Problem<T, N, M>) {
         self.problem.clone_from(problem);
     }

@@ -84,6 +84,11 @@ pub enum InvalidProblem {
         "`filters` has given gains for some modes only; estimates with and without covariances cannot be mixed (derbez2000 (2))"
     )]
     SomeGiven,
+    /// A run with covariances is to go on without them, or the reverse.
+    #[error(
+        "`filters` gives gains where the run computes them, or the reverse; begin a new run instead (derbez2000 (2))"
+    )]
+    OtherKind,
     /// A filter with a given gain is to draw points.
     #[error(
         "`filters` has a given gain and draws points; without a covariance there is nothing to draw them from (derbez2000 (2))"

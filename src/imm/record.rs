@@ -217,11 +217,11 @@ where
     }
 }
 
-/// The table. A row: the value, its name, its equations, its rows and columns, of each mode or of all, what it needs, and its place in
-/// [`Step`]; `[j]` stands for the entry of mode j, `?` for a value that may not be there.
+/// The table. A row: the value, its name, its rows and columns, of each mode or of all, what it needs, its place in [`Step`], and its
+/// equations; `[j]` stands for the entry of mode j, `?` for a value that may not be there.
 macro_rules! values {
-    ($($value:ident $name:literal $equation:literal ($rows:ident, $columns:ident) $per:ident [$($needs:ident),*]
-        $field:ident $([$mode:ident])? $(? $some:ident)? $(. $part:ident)?;)*) => {
+    ($($value:ident $name:literal ($rows:ident, $columns:ident) $per:ident [$($needs:ident),*]
+        $field:ident $([$mode:ident])? $(? $some:ident)? $(. $part:ident)?, $equation:literal;)*) => {
         /// A traced value of a step.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Quantity {
@@ -250,14 +250,18 @@ macro_rules! values {
             /// The numbers of a quantity, by columns; of mode j if the quantity has a mode.
             fn entries(&self, quantity: Quantity, j: usize) -> Option<&[T]> {
                 match quantity {
-                    $(Quantity::$value => Some(values!(@place self, j, get, as_ref, $field $([$mode])? $(? $some)? $(. $part)?).entries()),)*
+                    $(Quantity::$value => {
+                        Some(values!(@place self, j, get, as_ref, $field $([$mode])? $(? $some)? $(. $part)?).entries())
+                    })*
                 }
             }
 
             /// As [`Step::entries`], to be overwritten.
             fn entries_mut(&mut self, quantity: Quantity, j: usize) -> Option<&mut [T]> {
                 match quantity {
-                    $(Quantity::$value => Some(values!(@place self, j, get_mut, as_mut, $field $([$mode])? $(? $some)? $(. $part)?).entries_mut()),)*
+                    $(Quantity::$value => {
+                        Some(values!(@place self, j, get_mut, as_mut, $field $([$mode])? $(? $some)? $(. $part)?).entries_mut())
+                    })*
                 }
             }
         }
@@ -273,27 +277,48 @@ macro_rules! values {
 
 #[rustfmt::skip]
 values! {
-    PredictedModeProbabilities   "predicted_mode_probabilities"   "zhu2016 (54), liu2017 (13)" (Modes, One) all [] predicted_mode_probabilities;
-    MixingProbabilities          "mixing_probabilities"           "zhu2016 (54), liu2017 (13)" (Modes, One) each [] mixing_probabilities[j];
-    MixedMean                    "mixed.mean"                     "zhu2016 (55), liu2017 (12)" (State, One) each [] mixed[j].mean;
-    MixedCovariance              "mixed.covariance"               "zhu2016 (56), liu2017 (12)" (State, State) each [Covariances] mixed[j].covariance;
-    PredictedMean                "predicted.mean"                 "zhu2016 (21), liu2017 (17)" (State, One) each [] predicted[j].mean;
-    PredictedCovariance          "predicted.covariance"           "zhu2016 (24), liu2017 (17)" (State, State) each [Covariances] predicted[j].covariance;
-    CombinedPredictionMean       "combined_prediction.mean"       "zhu2016 (59), liu2017 (23)" (State, One) all [] combined_prediction.mean;
-    CombinedPredictionCovariance "combined_prediction.covariance" "zhu2016 (60), liu2017 (24)" (State, State) all [Covariances] combined_prediction.covariance;
-    ConvertedMeasurement         "converted_measurement"          "sustika2015 (20)-(21)"      (Measurement, One) all [Conversion, Detection] converted_measurement? z;
-    ConvertedCovariance          "converted_covariance"           "sustika2015 (22)-(26)"      (Measurement, Measurement) all [Conversion, Detection] converted_covariance? r;
-    PredictedMeasurement         "predicted_measurement"          "zhu2016 (42), liu2017 (19)" (Measurement, One) each [Detection] predicted_measurements[j];
-    Innovation                   "innovation"                     "zhu2016 (52), liu2017 (20)" (Measurement, One) each [Detection] innovations[j];
-    InnovationCovariance         "innovation_covariance"          "zhu2016 (45), liu2017 (19)" (Measurement, Measurement) each [Detection] innovation_covariances[j];
-    CrossCovariance              "cross_covariance"               "zhu2016 (48), liu2017 (19)" (State, Measurement) each [Covariances, Detection] cross_covariances[j];
-    Gain                         "gain"                           "zhu2016 (51), liu2017 (20)" (State, Measurement) each [Detection] gains[j];
-    UpdatedMean                  "updated.mean"                   "zhu2016 (52), liu2017 (20)" (State, One) each [] updated[j].mean;
-    UpdatedCovariance            "updated.covariance"             "zhu2016 (53), liu2017 (20)" (State, State) each [Covariances] updated[j].covariance;
-    LogLikelihood                "log_likelihood"                 "zhu2016 (57), liu2017 (21)" (One, One) each [Detection] log_likelihoods[j];
-    ModeProbabilities            "mode_probabilities"             "zhu2016 (58), liu2017 (22)" (Modes, One) all [] mode_probabilities;
-    CombinedMean                 "combined.mean"                  "zhu2016 (59), liu2017 (23)" (State, One) all [] combined.mean;
-    CombinedCovariance           "combined.covariance"            "zhu2016 (60), liu2017 (24)" (State, State) all [Covariances] combined.covariance;
+    PredictedModeProbabilities "predicted_mode_probabilities" (Modes, One) all []
+        predicted_mode_probabilities, "zhu2016 (54), liu2017 (13)";
+    MixingProbabilities "mixing_probabilities" (Modes, One) each []
+        mixing_probabilities[j], "zhu2016 (54), liu2017 (13)";
+    MixedMean "mixed.mean" (State, One) each []
+        mixed[j].mean, "zhu2016 (55), liu2017 (12)";
+    MixedCovariance "mixed.covariance" (State, State) each [Covariances]
+        mixed[j].covariance, "zhu2016 (56), liu2017 (12)";
+    PredictedMean "predicted.mean" (State, One) each []
+        predicted[j].mean, "zhu2016 (21), liu2017 (17)";
+    PredictedCovariance "predicted.covariance" (State, State) each [Covariances]
+        predicted[j].covariance, "zhu2016 (24), liu2017 (17)";
+    CombinedPredictionMean "combined_prediction.mean" (State, One) all []
+        combined_prediction.mean, "zhu2016 (59), liu2017 (23)";
+    CombinedPredictionCovariance "combined_prediction.covariance" (State, State) all [Covariances]
+        combined_prediction.covariance, "zhu2016 (60), liu2017 (24)";
+    ConvertedMeasurement "converted_measurement" (Measurement, One) all [Conversion, Detection]
+        converted_measurement? z, "sustika2015 (20)-(21)";
+    ConvertedCovariance "converted_covariance" (Measurement, Measurement) all [Conversion, Detection]
+        converted_covariance? r, "sustika2015 (22)-(26)";
+    PredictedMeasurement "predicted_measurement" (Measurement, One) each [Detection]
+        predicted_measurements[j], "zhu2016 (42), liu2017 (19)";
+    Innovation "innovation" (Measurement, One) each [Detection]
+        innovations[j], "zhu2016 (52), liu2017 (20)";
+    InnovationCovariance "innovation_covariance" (Measurement, Measurement) each [Detection]
+        innovation_covariances[j], "zhu2016 (45), liu2017 (19)";
+    CrossCovariance "cross_covariance" (State, Measurement) each [Covariances, Detection]
+        cross_covariances[j], "zhu2016 (48), liu2017 (19)";
+    Gain "gain" (State, Measurement) each [Detection]
+        gains[j], "zhu2016 (51), liu2017 (20)";
+    UpdatedMean "updated.mean" (State, One) each []
+        updated[j].mean, "zhu2016 (52), liu2017 (20)";
+    UpdatedCovariance "updated.covariance" (State, State) each [Covariances]
+        updated[j].covariance, "zhu2016 (53), liu2017 (20)";
+    LogLikelihood "log_likelihood" (One, One) each [Detection]
+        log_likelihoods[j], "zhu2016 (57), liu2017 (21)";
+    ModeProbabilities "mode_probabilities" (Modes, One) all []
+        mode_probabilities, "zhu2016 (58), liu2017 (22)";
+    CombinedMean "combined.mean" (State, One) all []
+        combined.mean, "zhu2016 (59), liu2017 (23)";
+    CombinedCovariance "combined.covariance" (State, State) all [Covariances]
+        combined.covariance, "zhu2016 (60), liu2017 (24)";
 }
 
 /// What a quantity is computed from: another of the same step, or of the step before. Of the same step and mode if both have a mode,

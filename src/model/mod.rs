@@ -22,10 +22,10 @@
 //!
 //! ```
 //! use immaculate::model::motion::{constant_velocity, turn_matrix};
-//! use immaculate::model::{Sensor, PolarComponent};
-//! use nalgebra::vector;
+//! use immaculate::model::{PolarComponent, Sensor};
+//! use nalgebra::{U1, U4, vector};
 //!
-//! let range = Sensor::Polar { components: vec![PolarComponent::Range], position: [0, 2], location: [0.0, 0.0] };
+//! let range = Sensor::<f64, U4, U1>::Polar { components: vec![PolarComponent::Range], position: [0, 2], location: [0.0, 0.0] };
 //! let state = vector![0.0, 3.0, 4.0, 0.0]; // [x, ẋ, y, ẏ]: 4 m to the north, eastward at 3 m/s
 //! // Straight it is at (3, 4), √(3² + 4²) away.
 //! assert_eq!(range.of(&(constant_velocity(&1.0) * state)), vector![5.0]);

@@ -130,6 +130,17 @@ where
     /// F; of a function, which has none, every entry is undecided.
     ///
     /// Source: the matrix of the motion itself.
+    ///
+    /// Example: of a motion with an offset the matrix alone.
+    ///
+    /// ```
+    /// use immaculate::model::motion::Motion;
+    /// use nalgebra::{matrix, vector};
+    ///
+    /// let drift = Motion::Affine { matrix: matrix![2.0], offset: vector![3.0] };
+    /// assert_eq!(*drift.matrix(), matrix![2.0]);
+    /// assert_eq!(drift.of(&vector![5.0]), vector![13.0]); // 2 · 5 + 3
+    /// ```
     pub fn matrix(&self) -> Cow<'_, OMatrix<T, N, N>> {
         match self {
             Self::Linear(matrix) | Self::Affine { matrix, .. } => Cow::Borrowed(matrix),

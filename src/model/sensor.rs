@@ -54,10 +54,10 @@ where
     /// Example: a target 3 m east and 4 m north of the sensor is 5 m away.
     ///
     /// ```
-    /// use immaculate::model::{Sensor, PolarComponent};
-    /// use nalgebra::vector;
+    /// use immaculate::model::{PolarComponent, Sensor};
+    /// use nalgebra::{U1, U4, vector};
     ///
-    /// let range = Sensor::Polar { components: vec![PolarComponent::Range], position: [0, 2], location: [100.0, 0.0] };
+    /// let range = Sensor::<f64, U4, U1>::Polar { components: vec![PolarComponent::Range], position: [0, 2], location: [100.0, 0.0] };
     /// assert_eq!(range.of(&vector![103.0, 7.0, 4.0, 8.0]), vector![5.0]); // √(3² + 4²)
     /// ```
     ///
@@ -106,11 +106,11 @@ where
     /// Example: a target to the south-west, whose bearing is −135°. The printed tan⁻¹(y/x) says 45°, the opposite direction.
     ///
     /// ```
-    /// use immaculate::model::{Sensor, PolarComponent};
-    /// use nalgebra::vector;
+    /// use immaculate::model::{PolarComponent, Sensor};
+    /// use nalgebra::{U2, vector};
     /// use std::f64::consts::PI;
     ///
-    /// let radar = Sensor::Polar {
+    /// let radar = Sensor::<f64, U2, U2>::Polar {
     ///     components: vec![PolarComponent::Range, PolarComponent::Bearing],
     ///     position: [0, 1],
     ///     location: [0.0, 0.0],
@@ -167,7 +167,8 @@ where
     /// Example: a radar that reports the bearing first, and one without a range.
     ///
     /// ```
-    /// use immaculate::model::{Sensor, PolarComponent::{Bearing, Range}};
+    /// use immaculate::model::{PolarComponent::{Bearing, Range}, Sensor};
+    /// use nalgebra::U2;
     ///
     /// let (position, location) = ([0, 1], [0.0, 0.0]);
     /// let radar = Sensor::<f64, U2, U2>::Polar { components: vec![Bearing, Range], position, location };
@@ -199,8 +200,8 @@ where
     /// apart.
     ///
     /// ```
-    /// use immaculate::model::{Sensor, PolarComponent};
-    /// use nalgebra::vector;
+    /// use immaculate::model::{PolarComponent, Sensor};
+    /// use nalgebra::{U1, U2, vector};
     /// use std::f64::consts::PI;
     ///
     /// let bearing = Sensor::<f64, U2, U1>::Polar { components: vec![PolarComponent::Bearing], position: [0, 1], location: [0.0, 0.0] };
@@ -237,8 +238,8 @@ where
     /// Example: the mean of 135° and −135°, seen from the centre at 180°, is 180°. As plain numbers it is 0°, the opposite direction.
     ///
     /// ```
-    /// use immaculate::model::{Sensor, PolarComponent};
-    /// use nalgebra::vector;
+    /// use immaculate::model::{PolarComponent, Sensor};
+    /// use nalgebra::{U1, U2, vector};
     /// use std::f64::consts::PI;
     ///
     /// let bearing = Sensor::<f64, U2, U1>::Polar { components: vec![PolarComponent::Bearing], position: [0, 1], location: [0.0, 0.0] };

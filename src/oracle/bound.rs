@@ -9,7 +9,7 @@
 //! ```
 
 use super::invalid::{Class, Invalid};
-use super::models::{ComponentFile, ModelFile, NoiseFile, OthersFile, Parameters};
+use super::models::{ComponentFile, ModelFile, ModelParameters, NoiseFile, OthersFile};
 use super::problem::{MeasurementFile, ModeFile, ProblemFile};
 use crate::matrix::mirrored;
 use crate::model::binding::{InvalidModel, Others, STEP};
@@ -237,7 +237,7 @@ fn noise(mode: &ModeFile, place: &str, state: &Space, scope: &Scope) -> Result<O
 }
 
 /// A measurement by the name of a model.
-fn measured(id: &str, parameters: &Parameters, state: &Space) -> Result<(Space, Function), Invalid> {
+fn measured(id: &str, parameters: &ModelParameters, state: &Space) -> Result<(Space, Function), Invalid> {
     let place = "problem.measurement";
     let found = named(id, ModelKind::Measurement, place)?.measurement(state, &numbers(parameters));
     found.map_err(|error| of_model(&error, place))
@@ -255,8 +255,8 @@ fn named(id: &str, kind: ModelKind, place: &str) -> Result<&'static Model, Inval
     Ok(found)
 }
 
-/// Parameters as exact numbers.
-fn numbers(parameters: &Parameters) -> Vec<(&str, Rational)> {
+/// ModelParameters as exact numbers.
+fn numbers(parameters: &ModelParameters) -> Vec<(&str, Rational)> {
     let exact = parameters.0.iter();
     exact
         .map(|(name, value)| (name.as_str(), Rational::from_f64(*value)))
@@ -279,7 +279,7 @@ impl<'a> Scope<'a> {
         &self,
         place: &str,
         state: &Space,
-        parameters: &'a Parameters,
+        parameters: &'a ModelParameters,
         definitions: &'a [[String; 2]],
     ) -> Result<Self, Invalid> {
         let mut scope = self.clone();

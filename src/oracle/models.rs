@@ -107,9 +107,9 @@ impl JsonSchema for ComponentFile {
 
 /// Names with their numbers, in the order of the file. A name stands once.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Parameters(pub Vec<(String, f64)>);
+pub struct ModelParameters(pub Vec<(String, f64)>);
 
-impl Parameters {
+impl ModelParameters {
     /// Whether there is none.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
@@ -121,7 +121,7 @@ impl Parameters {
     }
 }
 
-impl Serialize for Parameters {
+impl Serialize for ModelParameters {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(Some(self.0.len()))?;
         for (name, value) in &self.0 {
@@ -131,16 +131,16 @@ impl Serialize for Parameters {
     }
 }
 
-impl<'de> Deserialize<'de> for Parameters {
+impl<'de> Deserialize<'de> for ModelParameters {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct Reader;
         impl<'de> Visitor<'de> for Reader {
-            type Value = Parameters;
+            type Value = ModelParameters;
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
                 f.write_str("names with their numbers")
             }
-            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Parameters, A::Error> {
-                let mut parameters = Parameters::default();
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<ModelParameters, A::Error> {
+                let mut parameters = ModelParameters::default();
                 while let Some((name, value)) = map.next_entry::<String, f64>()? {
                     if parameters.get(&name).is_some() {
                         return Err(A::Error::custom(format!("has the name `{name}` twice")));
@@ -154,7 +154,7 @@ impl<'de> Deserialize<'de> for Parameters {
     }
 }
 
-impl JsonSchema for Parameters {
+impl JsonSchema for ModelParameters {
     fn schema_name() -> Cow<'static, str> {
         "Parameters".into()
     }
@@ -175,8 +175,8 @@ pub struct ModelFile {
     /// Its name.
     pub model: String,
     /// Its parameters.
-    #[serde(default, skip_serializing_if = "Parameters::is_empty")]
-    pub parameters: Parameters,
+    #[serde(default, skip_serializing_if = "ModelParameters::is_empty")]
+    pub parameters: ModelParameters,
     /// Of a motion: what becomes of the components of the state that the model does not have. Absent, there may be none.
     #[serde(
         default,
@@ -319,7 +319,7 @@ pub struct ModeModels {
     /// Names for formulas: each a name and a formula of what stands before it.
     pub definitions: Vec<[String; 2]>,
     /// Names with numbers, known in this mode.
-    pub parameters: Parameters,
+    pub parameters: ModelParameters,
 }
 
 /// A mode as it stands in the file.
@@ -362,8 +362,8 @@ pub(super) struct ModeKeys {
     #[serde(default, rename = "let", skip_serializing_if = "Vec::is_empty")]
     definitions: Vec<[String; 2]>,
     /// Names with numbers.
-    #[serde(default, skip_serializing_if = "Parameters::is_empty")]
-    parameters: Parameters,
+    #[serde(default, skip_serializing_if = "ModelParameters::is_empty")]
+    parameters: ModelParameters,
 }
 
 impl TryFrom<ModeKeys> for ModeFile {

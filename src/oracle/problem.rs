@@ -4,7 +4,7 @@
 //! description). Format 1 is format 2 without what [`super::models`] adds. What must be true of a file is in `well_formed`.
 
 use super::invalid::{Class, Invalid};
-use super::models::{ComponentFile, ModeKeys, ModeModels, Parameters};
+use super::models::{ComponentFile, ModeKeys, ModeModels, ModelParameters};
 use super::trace::Dimensions;
 use super::unreadable;
 use crate::imm::{Needs, Quantity};
@@ -59,8 +59,8 @@ pub struct ProblemFile {
     #[serde(default)]
     pub units: Vec<String>,
     /// Names with numbers, known in all formulas; `T` is the length of a step. Format 2.
-    #[serde(default, skip_serializing_if = "Parameters::is_empty")]
-    pub parameters: Parameters,
+    #[serde(default, skip_serializing_if = "ModelParameters::is_empty")]
+    pub parameters: ModelParameters,
     /// Names for formulas: each a name and a formula of what stands before it, known in all formulas. Format 2.
     #[serde(default, rename = "let", skip_serializing_if = "Vec::is_empty")]
     pub definitions: Vec<[String; 2]>,
@@ -130,8 +130,8 @@ pub enum MeasurementFile {
         /// Its name.
         model: String,
         /// Its parameters.
-        #[serde(default, skip_serializing_if = "Parameters::is_empty")]
-        parameters: Parameters,
+        #[serde(default, skip_serializing_if = "ModelParameters::is_empty")]
+        parameters: ModelParameters,
     },
 }
 

@@ -4,7 +4,7 @@
 //! that have a `kind` must know the kind before it can read the rest, and forgets the places on the way; here they are found again.
 
 use super::invalid::{Class, Invalid};
-use super::models::{ComponentFile, Parameters};
+use super::models::{ComponentFile, ModelParameters};
 use super::problem::{FixedGainFile, Rows};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -35,7 +35,7 @@ const OBJECTS: [(&str, &[Kind]); 2] = [
             ),
             (
                 "model",
-                &[("model", attempt::<String>), ("parameters", attempt::<Parameters>)],
+                &[("model", attempt::<String>), ("parameters", attempt::<ModelParameters>)],
             ),
         ],
     ),

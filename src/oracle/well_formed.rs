@@ -273,6 +273,7 @@ fn of_problem(error: &InvalidProblem) -> Invalid {
         InvalidProblem::NotPositive { .. } => Class::NotPositiveDefinite,
         InvalidProblem::NotLinear { .. }
         | InvalidProblem::SomeGiven
+        | InvalidProblem::OtherKind
         | InvalidProblem::NothingToDrawFrom
         | InvalidProblem::TwoConversions
         | InvalidProblem::NotRangeAndBearing

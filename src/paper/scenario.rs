@@ -4,8 +4,9 @@
 //! of one run's truth, measurements and initial estimate, and contestants that all see the same draw.
 
 use super::monte_carlo::{Generator, follow};
-use super::simulation::{Average, Filter, Path, Run, Simulation};
+use super::simulation::{Average, Competitor, Path, Run, Simulation};
 use super::specification::Choices;
+use crate::filter::Filter;
 use crate::gaussian::Gaussian;
 use crate::imm::{Equations, Imm, Initial, Problem, Step};
 use crate::model::motion::{constant_velocity, coordinated_turn};
@@ -16,7 +17,7 @@ use nalgebra::{Matrix4, U2, U4, Vector2, Vector4};
 
 /// What the target does in a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Motion {
+pub enum Course {
     /// Constant velocity.
     Straight,
     /// A turn to the left.
@@ -25,7 +26,7 @@ pub enum Motion {
     RightTurn,
 }
 
-impl Motion {
+impl Course {
     /// The name of the mode that models this motion.
     pub fn name(self) -> &'static str {
         match self {
@@ -77,7 +78,7 @@ impl Contestant {
         Self {
             name: name.to_owned(),
             problem: Problem {
-                filters: vec![crate::filter::Filter::points(rule)],
+                filters: vec![Filter::points(rule)],
                 ..problem
             },
             equations: Equations::standard(),
@@ -109,7 +110,7 @@ pub struct Scenario {
     /// Whether the filters start from an estimate drawn from N(x₀, P₀), or from x₀ itself.
     pub draws_initial_estimate: bool,
     /// What the target does in steps 1, 2, …
-    pub schedule: Vec<Motion>,
+    pub schedule: Vec<Course>,
     /// A square root of the truth's process noise; none for a deterministic trajectory.
     pub truth_noise_root: Option<Matrix4<f64>>,
     /// What the sensor sees.
@@ -208,8 +209,8 @@ impl Simulation for Scenario {
         (4.0, 2.0)
     }
 
-    fn filters(&self) -> Vec<Filter> {
-        let filter = |contestant: &Contestant| Filter {
+    fn filters(&self) -> Vec<Competitor> {
+        let filter = |contestant: &Contestant| Competitor {
             name: contestant.name.clone(),
             modes: contestant.problem.modes.iter().map(|mode| mode.name.clone()).collect(),
             points: contestant.points,

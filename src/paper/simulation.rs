@@ -12,7 +12,7 @@ use std::time::Duration;
 
 /// A filter of a simulation, by what is printed about it.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Filter {
+pub struct Competitor {
     /// The paper's name for it.
     pub name: String,
     /// The names of its modes.
@@ -94,7 +94,7 @@ pub trait Simulation: Debug + Sync {
     /// The numbers of components of the state and of the measurement: what NEES and NIS are expected to be.
     fn components(&self) -> (f64, f64);
     /// The filters, in the order of the results.
-    fn filters(&self) -> Vec<Filter>;
+    fn filters(&self) -> Vec<Competitor>;
     /// What every filter did in run `run`, counted from 0.
     fn one_run(&self, run: usize, seed: u64) -> Vec<Run>;
     /// The first run's truth and measurements; none where each filter has its own.

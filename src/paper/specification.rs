@@ -15,9 +15,9 @@ pub struct Specification {
     /// What its filters are, in the words of `spec/variants.toml`.
     pub applies: Vec<String>,
     /// The numbered equations, in order.
-    pub equations: Vec<Equation>,
+    pub equations: Vec<PublishedEquation>,
     /// What the paper prints without a number, or needs and does not print.
-    pub unnumbered: Vec<Equation>,
+    pub unnumbered: Vec<PublishedEquation>,
     /// The published tables.
     pub tables: Vec<PublishedTable>,
     /// The open parameters of the scenario.
@@ -64,7 +64,7 @@ impl std::fmt::Display for Authors {
 /// An equation of a paper.
 #[derive(Debug, Clone, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub struct Equation {
+pub struct PublishedEquation {
     /// The printed number.
     pub number: Option<u32>,
     /// The name of an equation without a number.
@@ -304,7 +304,7 @@ impl Choices {
 
 impl Specification {
     /// The equations with a printed number, then those without.
-    pub fn all_equations(&self) -> impl Iterator<Item = &Equation> {
+    pub fn all_equations(&self) -> impl Iterator<Item = &PublishedEquation> {
         self.equations.iter().chain(&self.unnumbered)
     }
 
@@ -440,9 +440,9 @@ pub fn liu2017() -> &'static Specification {
 struct EquationsFile {
     applies: Vec<String>,
     paper: Citation,
-    equation: Vec<Equation>,
+    equation: Vec<PublishedEquation>,
     #[serde(default)]
-    unnumbered: Vec<Equation>,
+    unnumbered: Vec<PublishedEquation>,
 }
 
 #[derive(Deserialize)]

@@ -141,7 +141,7 @@ pub const MOST_POINTS: usize = 100_000;
 /// ```
 /// use immaculate::rule::gauss_hermite::gauss_hermite;
 ///
-/// let rule = gauss_hermite::<f64, _>(U2, 3).unwrap();
+/// let rule = gauss_hermite::<f64, _>(nalgebra::U2, 3).unwrap();
 /// assert_eq!(rule.points.len(), 9);
 /// assert_eq!(rule.points[0].as_slice(), [0.0, 0.0]);
 /// assert_eq!(rule.weights[0], 2.0 / 3.0 * (2.0 / 3.0));

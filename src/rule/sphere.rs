@@ -1,5 +1,6 @@
-//! The degree of a spherical-radial rule, for every dimension n ≥ 2 at once. (At n = 1 the sphere is two points and has no harmonics
-//! beyond degree one; the recurrence below divides by n − 1.)
+//! The degree of a spherical-radial rule, for every dimension n ≥ 2 at once.
+//!
+//! (At n = 1 the sphere is two points and has no harmonics beyond degree one; the recurrence below divides by n − 1.)
 //!
 //! After this file the reader knows why a rule's degree can be proven without its coordinates. The rules here are a centre and
 //! points ±s on one sphere. Odd moments vanish by symmetry. For even ones two things decide:

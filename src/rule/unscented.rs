@@ -177,7 +177,7 @@ pub fn unscented(n: usize, parameters: &Parameters) -> Result<ExactRule, Invalid
 /// ```
 /// use immaculate::rule::unscented::unscented_in;
 ///
-/// let rule = unscented_in(U2, &1.0, &0.0, &1.0).unwrap();
+/// let rule = unscented_in(nalgebra::U2, &1.0, &0.0, &1.0).unwrap();
 /// assert_eq!(rule.points[1][0], 3.0_f64.sqrt());
 /// assert_eq!(rule.weights[..2], [1.0 / 3.0, 1.0 / 6.0]);
 /// ```

@@ -42,11 +42,12 @@ pub fn nees<const N: usize>(estimate: &Gaussian<f64, Const<N>>, truth: &SVector<
 /// Example: two equally likely modes with innovations 1 and 3 and variances 2 and 4: ν̄ = 2, S̄ = 3 + 1.
 ///
 /// ```
-/// use immaculate::imm::Step;
+/// use immaculate::{gaussian::Gaussian, imm::Step};
 /// use immaculate::statistics::consistency::nis;
-/// use nalgebra::{matrix, vector};
+/// use nalgebra::{U1, matrix, vector};
 ///
-/// let mut step = Step::<f64, U1, U1>::zeros(2, 0);
+/// let estimate = Gaussian { mean: vector![0.0], covariance: matrix![1.0] };
+/// let mut step = Step::<f64, U1, U1>::initial(&[estimate.clone(), estimate], &[0.5, 0.5]);
 /// step.measurement = Some(vector![0.0]);
 /// step.predicted_mode_probabilities = vec![0.5, 0.5];
 /// step.innovations = vec![vector![1.0], vector![3.0]];

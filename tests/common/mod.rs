@@ -294,21 +294,6 @@ pub fn bits<'a>(values: impl IntoIterator<Item = &'a f64>) -> Vec<u64> {
     values.into_iter().map(|value| canonical(value).to_bits()).collect()
 }
 
-/// The bits of all values of a step for one mode, measured ones included.
-pub fn bits_of_mode(step: &Step<f64, U4, U2>, j: usize) -> Vec<u64> {
-    let mut all = Vec::new();
-    for estimate in [&step.mixed[j], &step.predicted[j], &step.updated[j]] {
-        all.extend(bits_of(estimate));
-    }
-    all.extend(bits(&step.predicted_measurements[j]));
-    all.extend(bits(&step.innovations[j]));
-    all.extend(bits(&step.innovation_covariances[j]));
-    all.extend(bits(&step.cross_covariances[j]));
-    all.extend(bits(&step.gains[j]));
-    all.extend(bits([&step.log_likelihoods[j]]));
-    all
-}
-
 /// The bits of an estimate.
 pub fn bits_of(estimate: &Gaussian<f64, U4>) -> Vec<u64> {
     let mut all = bits(&estimate.mean);

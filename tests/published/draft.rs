@@ -4,7 +4,7 @@
 //! from standard deviations and correlations, and, where a formula gives a number, its first twelve significant digits. The rounded
 //! number *is* the input.
 
-use immaculate::oracle::models::Parameters;
+use immaculate::oracle::models::ModelParameters;
 use immaculate::oracle::problem::{
     Conventions, EstimateFile, FORMAT, FilterFile, InitialFile, MeasurementAt, MeasurementFile, ModeFile, ProblemFile,
     Rows,
@@ -117,7 +117,7 @@ impl Draft {
             flags: Vec::new(),
             state: state.iter().map(|&name| name.into()).collect(),
             units: words(units),
-            parameters: Parameters::default(),
+            parameters: ModelParameters::default(),
             definitions: Vec::new(),
             modes,
             measurement: MeasurementFile::Linear { matrix: Vec::new() },

@@ -12,7 +12,7 @@ use crate::model::Conversion;
 use crate::paper::monte_carlo::Generator;
 use crate::paper::simulation::Average;
 use crate::paper::simulation::Run;
-use crate::paper::simulation::{self, Filter, Simulation};
+use crate::paper::simulation::{self, Competitor, Simulation};
 use crate::paper::specification::Choices;
 use crate::statistics::consistency::{nees, nis};
 use nalgebra::{Matrix1, U1, U3, Vector1, Vector2, Vector3, Vector4};
@@ -116,8 +116,8 @@ impl Simulation for CoordinateScenario {
         (6.0, 2.0)
     }
 
-    fn filters(&self) -> Vec<Filter> {
-        let filter = |contestant: &CoordinateFilters| Filter {
+    fn filters(&self) -> Vec<Competitor> {
+        let filter = |contestant: &CoordinateFilters| Competitor {
             name: contestant.name.clone(),
             modes: mode_names(contestant),
             points: None,
@@ -214,7 +214,11 @@ fn initial(contestant: &CoordinateFilters, state: Vector3<f64>) -> Initial<f64, 
 /// # Panics
 ///
 /// When the problem is not valid: the paper's problems are part of the program, and a test runs all of them.
-fn filter(contestant: &CoordinateFilters, problem: Problem<f64, U3, U1>, initial: &Initial<f64, U3>) -> Imm<f64, U3, U1> {
+fn filter(
+    contestant: &CoordinateFilters,
+    problem: Problem<f64, U3, U1>,
+    initial: &Initial<f64, U3>,
+) -> Imm<f64, U3, U1> {
     Imm::with_equations(problem, contestant.equations, initial).expect("the paper's problems are part of the program")
 }
 

@@ -13,7 +13,7 @@ use crate::paper::Effort;
 use crate::paper::comparison::ErrorQuantity;
 use crate::paper::experiment::Experiment;
 use crate::paper::monte_carlo::{Progress, run};
-use crate::paper::scenario::{Contestant, Motion, Scenario};
+use crate::paper::scenario::{Contestant, Course, Scenario};
 use crate::paper::specification::{Choices, InvalidChoice, Specification, liu2017 as specification};
 use crate::paper::verdict::{
     DECISIVE, JudgedClaim, RELEVANT, Verdict, all_of, better_by_a_thousandth, confirmed_if, in_words,
@@ -251,7 +251,7 @@ fn linear_imm_cannot(s: &Specification, printed: &Experiment, effort: Effort, pr
 /// The errors of the proposed filter beside all others, in the turns.
 pub fn outperforms_in_manoeuvres(s: &Specification, printed: &Experiment) -> JudgedClaim {
     let schedule = &printed.scenario.schedule;
-    let turning = |k: usize| schedule[k] != Motion::Straight;
+    let turning = |k: usize| schedule[k] != Course::Straight;
     let (verdict, mut evidence) = better_than_others(printed, &[ErrorQuantity::Position], &turning);
     end_sentence(&mut evidence);
     s.judgement(
@@ -264,7 +264,7 @@ pub fn outperforms_in_manoeuvres(s: &Specification, printed: &Experiment) -> Jud
 /// The same on straight parts.
 pub fn constant_velocity(s: &Specification, printed: &Experiment) -> JudgedClaim {
     let schedule = &printed.scenario.schedule;
-    let straight = |k: usize| schedule[k] == Motion::Straight;
+    let straight = |k: usize| schedule[k] == Course::Straight;
     let comparison = printed.comparison();
     let same = OTHERS.iter().all(|&other| {
         let difference = comparison.difference_over(IMM5THSSRCKF, other, ErrorQuantity::Position, &straight);
@@ -392,8 +392,8 @@ fn likelihood_exponent_effect(
     let comparison = both.comparison();
     let (corrected, printed) = (IMM5THSSRCKF, IMM5THSSRCKF + 4);
     let schedule = &both.scenario.schedule;
-    let turning = |k: usize| schedule[k] != Motion::Straight;
-    let straight = |k: usize| schedule[k] == Motion::Straight;
+    let turning = |k: usize| schedule[k] != Course::Straight;
+    let straight = |k: usize| schedule[k] == Course::Straight;
     let over =
         |chosen: &dyn Fn(usize) -> bool, quantity| comparison.difference_over(printed, corrected, quantity, chosen);
     let evidence = format!(

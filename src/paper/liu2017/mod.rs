@@ -39,13 +39,13 @@ pub mod arithmetic;
 pub mod claims;
 
 use super::comparison::ErrorQuantity;
-use super::scenario::{Contestant, Motion, Scenario};
+use super::scenario::{Contestant, Course, Scenario};
 use super::simulation::Average;
 use super::specification::{Choices, InvalidChoice, liu2017 as specification};
 use crate::filter::Filter;
 use crate::imm::{Equations, Interaction, Problem};
 use crate::matrix::cholesky;
-use crate::model::motion::{self, Mode, constant_velocity, integrated_noise};
+use crate::model::motion::{Mode, Motion, constant_velocity, integrated_noise};
 use crate::model::{PolarComponent, Sensor};
 use crate::number::Rational;
 use crate::rule::RuleName;
@@ -209,7 +209,7 @@ pub fn scenario(choices: &Choices) -> Result<Scenario, InvalidChoice> {
 
 /// The motion that reaches the states at 2 s (or 1 s) to 200 s: "from 21 s to 70 s it turns right", "from 121 s to 170 s it maneuvers
 /// and turns left", or `shift` seconds later.
-fn schedule(from_first_second: bool, shift: usize) -> Vec<Motion> {
+fn schedule(from_first_second: bool, shift: usize) -> Vec<Course> {
     let first = if from_first_second {
         FIRST_SECOND
     } else {
@@ -217,9 +217,9 @@ fn schedule(from_first_second: bool, shift: usize) -> Vec<Motion> {
     };
     (first..=LAST_SECOND)
         .map(|t| match t {
-            t if (21 + shift..=70 + shift).contains(&t) => Motion::RightTurn,
-            t if (121 + shift..=170 + shift).contains(&t) => Motion::LeftTurn,
-            _ => Motion::Straight,
+            t if (21 + shift..=70 + shift).contains(&t) => Course::RightTurn,
+            t if (121 + shift..=170 + shift).contains(&t) => Course::LeftTurn,
+            _ => Course::Straight,
         })
         .collect()
 }
@@ -235,13 +235,13 @@ fn sensor() -> Sensor<f64, U4, U2> {
 
 /// Three modes with the noise of (27) and (30), and no rule yet.
 fn problem(deviations: &Vector2<f64>) -> Problem<f64, U4, U2> {
-    let mode = |motion: Motion| Mode {
+    let mode = |motion: Course| Mode {
         name: motion.name().to_owned(),
-        motion: motion::Motion::Linear(motion.transition(TURN_RATE, INTERVAL)),
+        motion: Motion::Linear(motion.transition(TURN_RATE, INTERVAL)),
         noise: integrated_noise(&NOISE_DENSITY, &INTERVAL),
     };
     Problem {
-        modes: [Motion::Straight, Motion::LeftTurn, Motion::RightTurn]
+        modes: [Course::Straight, Course::LeftTurn, Course::RightTurn]
             .map(mode)
             .to_vec(),
         chain: TRANSITION.iter().map(|row| row.to_vec()).collect(),

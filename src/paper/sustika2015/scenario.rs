@@ -12,7 +12,7 @@ use crate::model::conversion::Conversion;
 use crate::paper::monte_carlo::follow;
 use crate::paper::simulation::Average;
 use crate::paper::simulation::Run;
-use crate::paper::simulation::{self, Filter, Simulation};
+use crate::paper::simulation::{self, Competitor, Simulation};
 use crate::paper::specification::Choices;
 use crate::statistics::consistency::{nees, nis};
 use crate::statistics::fit_error::{FitForm, position_fit_error};
@@ -145,8 +145,8 @@ impl Simulation for RadarScenario {
         (6.0, 2.0)
     }
 
-    fn filters(&self) -> Vec<Filter> {
-        let filter = |contestant: &RadarFilter| Filter {
+    fn filters(&self) -> Vec<Competitor> {
+        let filter = |contestant: &RadarFilter| Competitor {
             name: contestant.name.to_owned(),
             modes: contestant.problem.modes.iter().map(|mode| mode.name.clone()).collect(),
             points: contestant.points,

@@ -11,7 +11,7 @@ use crate::paper::Effort;
 use crate::paper::comparison::{Comparison, ErrorQuantity};
 use crate::paper::experiment::Experiment;
 use crate::paper::monte_carlo::{Progress, run};
-use crate::paper::scenario::{Contestant, Motion, Scenario};
+use crate::paper::scenario::{Contestant, Course, Scenario};
 use crate::paper::specification::{Choices, InvalidChoice, Specification, zhu2016 as specification};
 use crate::paper::verdict::{DECISIVE, JudgedClaim, Verdict, all_below_zero, confirmed_if, in_words, proven_if};
 use crate::rule::sphere::{on_axes, on_axes_and_diagonals};
@@ -228,8 +228,8 @@ pub fn imm_beats_single_model(s: &Specification, experiments: &[Experiment; 3]) 
     for experiment in &experiments[..2] {
         let comparison = experiment.comparison();
         let schedule = &experiment.scenario.schedule;
-        let straight = |k: usize| schedule[k] == Motion::Straight;
-        let turning = |k: usize| schedule[k] != Motion::Straight;
+        let straight = |k: usize| schedule[k] == Course::Straight;
+        let turning = |k: usize| schedule[k] != Course::Straight;
         let over = |chosen: &dyn Fn(usize) -> bool| {
             comparison.difference_over(IMM5CKF, SINGLE, ErrorQuantity::Position, chosen)
         };

@@ -40,12 +40,12 @@ pub mod claims;
 pub mod diagonal_mixing;
 
 use super::comparison::ErrorQuantity;
-use super::scenario::{Contestant, Motion, Scenario};
+use super::scenario::{Contestant, Course, Scenario};
 use super::simulation::Average;
 use super::specification::{Choices, InvalidChoice, zhu2016 as specification};
 use crate::filter::Filter;
 use crate::imm::{Equations, Interaction, Problem};
-use crate::model::motion::{self, Mode, acceleration_input, acceleration_noise};
+use crate::model::motion::{Mode, Motion, acceleration_input, acceleration_noise};
 use crate::model::{PolarComponent, Sensor};
 use crate::number::Rational;
 use crate::rule::RuleName;
@@ -141,8 +141,8 @@ pub fn scenario(choices: &Choices) -> Result<Scenario, InvalidChoice> {
         _ => None,
     };
     let turns = match chosen("model-order")? {
-        "left-second" => [Motion::LeftTurn, Motion::RightTurn],
-        _ => [Motion::RightTurn, Motion::LeftTurn],
+        "left-second" => [Course::LeftTurn, Course::RightTurn],
+        _ => [Course::RightTurn, Course::LeftTurn],
     };
     let initial_probabilities = match chosen("initial-probabilities")? {
         "stationary" => vec![10.0 / 23.0, 7.0 / 23.0, 6.0 / 23.0],
@@ -168,7 +168,7 @@ pub fn scenario(choices: &Choices) -> Result<Scenario, InvalidChoice> {
         noise,
         initial_probabilities,
     };
-    let motions = [Motion::Straight, turns[0], turns[1]];
+    let motions = [Course::Straight, turns[0], turns[1]];
     let mut contestants = vec![
         build.imm("IMM5CKF", &motions, &RuleName::FifthDegree),
         build.imm("IMMCKF", &motions, &RuleName::ThirdDegree),
@@ -203,12 +203,12 @@ pub fn scenario(choices: &Choices) -> Result<Scenario, InvalidChoice> {
 
 /// "The target turns right during 20 s ~ 40 s, turns left during 60 s ~ 80 s, and maintains uniform motion during the other time": the
 /// motion of steps 1 to 100, with turns in 20 ≤ k < 40 and 60 ≤ k < 80, or `shift` steps later.
-fn schedule(shift: usize) -> Vec<Motion> {
+fn schedule(shift: usize) -> Vec<Course> {
     (1..=STEPS)
         .map(|k| match k {
-            k if (20 + shift..40 + shift).contains(&k) => Motion::RightTurn,
-            k if (60 + shift..80 + shift).contains(&k) => Motion::LeftTurn,
-            _ => Motion::Straight,
+            k if (20 + shift..40 + shift).contains(&k) => Course::RightTurn,
+            k if (60 + shift..80 + shift).contains(&k) => Course::LeftTurn,
+            _ => Course::Straight,
         })
         .collect()
 }
@@ -249,10 +249,10 @@ struct Builder {
 }
 
 impl Builder {
-    fn problem(&self, motions: &[Motion], noise: f64) -> Problem<f64, U4, U2> {
-        let mode = |motion: &Motion| Mode {
+    fn problem(&self, motions: &[Course], noise: f64) -> Problem<f64, U4, U2> {
+        let mode = |motion: &Course| Mode {
             name: motion.name().to_owned(),
-            motion: motion::Motion::Linear(motion.transition(TURN_RATE, INTERVAL)),
+            motion: Motion::Linear(motion.transition(TURN_RATE, INTERVAL)),
             noise: acceleration_noise(&noise, &INTERVAL),
         };
         let chain = match motions {
@@ -270,7 +270,7 @@ impl Builder {
         }
     }
 
-    fn imm(&self, name: &str, motions: &[Motion], rule: &RuleName) -> Contestant {
+    fn imm(&self, name: &str, motions: &[Course], rule: &RuleName) -> Contestant {
         let problem = self.problem(motions, self.noise);
         Contestant::with_rule(name, problem, rule, self.initial_probabilities.clone())
     }
@@ -278,16 +278,16 @@ impl Builder {
     /// The filter of one model that the paper calls 5CKF, without saying of which model.
     fn single(&self, alternative: &str) -> Contestant {
         let (motion, noise) = match alternative {
-            "coordinated-turn" => (Motion::RightTurn, self.noise),
-            "constant-velocity-ten-times-noise" => (Motion::Straight, 10.0 * self.noise),
-            _ => (Motion::Straight, self.noise),
+            "coordinated-turn" => (Course::RightTurn, self.noise),
+            "constant-velocity-ten-times-noise" => (Course::Straight, 10.0 * self.noise),
+            _ => (Course::Straight, self.noise),
         };
         let problem = self.problem(&[motion], noise);
         Contestant::with_rule("5CKF", problem, &RuleName::FifthDegree, vec![1.0])
     }
 
     /// The stand-in for OMTM-IMM: Kalman filters where the measurement is linear, cubature filters of degree three where it is not.
-    fn stand_in(&self, motions: &[Motion]) -> Contestant {
+    fn stand_in(&self, motions: &[Course]) -> Contestant {
         let problem = self.problem(motions, self.noise);
         let name = "OMTM-IMM (stand-in)";
         if let Sensor::Linear(_) = self.sensor {

@@ -8,7 +8,7 @@ use super::table::framed;
 use crate::oracle::case;
 use crate::oracle::variant::{Kind, catalogue};
 use crate::paper::Paper;
-use crate::paper::specification::Equation;
+use crate::paper::specification::PublishedEquation;
 use crate::paper::verdict::Verdict;
 use maud::{Markup, html};
 
@@ -42,7 +42,7 @@ fn purpose() -> Markup {
 
 /// What there is, counted.
 fn holdings() -> Markup {
-    let equations: Vec<&Equation> = Paper::ALL
+    let equations: Vec<&PublishedEquation> = Paper::ALL
         .into_iter()
         .flat_map(|paper| paper.specification().all_equations())
         .collect();
