@@ -174,7 +174,6 @@ where
     /// assert_eq!([&step.updated[0].mean, &step.updated[1].mean], [&vector![4.0], &vector![4.0]]);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    /// use immaculate::filter::Filter;
     ///
     /// Evidence: `identical_modes_with_fixed_gains_are_the_filter_alone` (exact).
     pub fn given(gain: FixedGain<T, N, M>) -> Self {

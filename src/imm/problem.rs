@@ -91,7 +91,6 @@ pub enum Interaction {
     /// assert_eq!([&step.updated[0].mean, &step.updated[1].mean], [&vector![3.0], &vector![5.0]]);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    /// use immaculate::filter::Filter;
     ///
     /// Evidence: `unmixed_modes_with_fixed_gains_stand_alone` (exact).
     Unmixed,

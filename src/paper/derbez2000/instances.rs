@@ -61,7 +61,6 @@ use nalgebra::{Matrix1, Matrix3, RowVector3, U1, U3, Vector3};
 ///     assert_eq!(f * f * f, Matrix3::zeros());
 /// }
 /// ```
-/// use immaculate::filter::Filter;
 ///
 /// Evidence: `the_mixed_covariances_of_the_theorem_s_instance_grow` (exact).
 pub fn growing_mixture<T: Field>() -> [Riccati<T, 3, 1>; 2] {
