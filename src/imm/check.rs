@@ -94,13 +94,9 @@ where
 
     /// Every matrix has the shape that the state of the first mode and R ask for. Shapes in the types cannot be wrong; the lists can.
     fn check_shapes(&self, initial: &Initial<T, N>) -> Result<(), InvalidProblem> {
-        if let Some(n) = N::try_to_usize() {
-            // A function can have another dimension even where the sides are types.
-            for (j, mode) in self.modes.iter().enumerate() {
-                check_shape_of_motion(&mode.motion, j, n)?;
-            }
-        }
-        let (n, m) = (self.n().value(), self.m().value());
+        // A function can have another dimension even where the sides are types, which are then right.
+        let n = N::try_to_usize().unwrap_or_else(|| self.n().value());
+        let m = self.m().value();
         for (j, mode) in self.modes.iter().enumerate() {
             check_shape_of_motion(&mode.motion, j, n)?;
             check_shape(&mode.noise, format!("modes[{j}].Q"), (n, n))?;
