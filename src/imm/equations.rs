@@ -194,9 +194,8 @@ where
                 }
                 _ => seen(problem, &now.predicted[j].mean, j),
             },
-            innovation: |problem, z, now, j| match &problem.filter(j).update {
-                Update::Converted(_) => used(problem, z, now, j) - &now.predicted_measurements[j],
-                _ => problem.sensor.difference(z, &now.predicted_measurements[j]),
+            innovation: |problem, z, now, j| {
+                difference(problem, used(problem, z, now, j), &now.predicted_measurements[j], j)
             },
             innovation_covariance: |problem, _, now, j| match &problem.filter(j).update {
                 Update::By(Transform::Points(rule)) => cubature::innovation_covariance(
@@ -374,6 +373,22 @@ where
     match (&problem.filter(j).update, &now.converted_measurement) {
         (Update::Converted(_), Some(converted)) => converted,
         _ => z,
+    }
+}
+
+/// How far two measurements are apart for the filter of mode j: angles are wrapped, and a converted measurement has none.
+pub(crate) fn difference<T: Real, N: Dim, M: Dim>(
+    problem: &Problem<T, N, M>,
+    a: &OVector<T, M>,
+    b: &OVector<T, M>,
+    j: usize,
+) -> OVector<T, M>
+where
+    Shapes: Holds<N, M>,
+{
+    match &problem.filter(j).update {
+        Update::Converted(_) => a - b,
+        _ => problem.sensor.difference(a, b),
     }
 }
 

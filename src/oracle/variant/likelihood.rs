@@ -3,7 +3,7 @@
 //! After this file the reader knows how the Gaussian density of a residual is miscalculated, and of which residual.
 
 use super::super::setup::Setup;
-use super::{diagonal, draws_points, noise, number, seen, used};
+use super::{diagonal, difference, draws_points, noise, number, seen, used};
 use crate::filter::kalman;
 use crate::gaussian::log_density;
 use crate::imm::printed::{log_density_21, log_density_57};
@@ -143,8 +143,5 @@ fn updated_residual<T: Real>(problem: &Problem<T, Dyn, Dyn>, now: &Step<T, Dyn, 
         return now.innovations[j].clone();
     };
     let seen = seen(problem, &now.updated[j].mean, j);
-    match problem.conversion() {
-        Some(_) => used(problem, z, now, j) - seen,
-        None => problem.sensor.difference(z, &seen),
-    }
+    difference(problem, used(problem, z, now, j), &seen, j)
 }

@@ -3,7 +3,7 @@
 //! After this file the reader knows how R is lost or counted twice, and which points and means are taken for others.
 
 use super::super::setup::Setup;
-use super::{draws_points, noise, seen, sum_of_covariance_weights, used, weights};
+use super::{difference, draws_points, noise, seen, sum_of_covariance_weights, used, weights};
 use crate::filter::{cubature, kalman};
 use crate::imm::{Equations, Problem, Step};
 use crate::number::Real;
@@ -32,13 +32,8 @@ fn of_predicted_measurement<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
         }
         // ν = ẑ − z
         "innovation-reversed" => {
-            equations.innovation = |problem, z, now, j| {
-                let (predicted, z) = (&now.predicted_measurements[j], used(problem, z, now, j));
-                match problem.conversion() {
-                    Some(_) => predicted - z,
-                    None => problem.sensor.difference(predicted, z),
-                }
-            }
+            equations.innovation =
+                |problem, z, now, j| difference(problem, &now.predicted_measurements[j], used(problem, z, now, j), j);
         }
         _ => return false,
     }

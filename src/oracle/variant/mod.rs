@@ -46,7 +46,7 @@ mod update;
 use super::setup::Setup;
 use crate::filter::cubature;
 use crate::gaussian::Gaussian;
-use crate::imm::equations::{Factored, noise, seen, used};
+use crate::imm::equations::{Factored, difference, noise, seen, used};
 use crate::imm::{Needs, Problem, Quantity, Step};
 use crate::model::{PolarComponent, Sensor};
 use crate::number::Real;
