@@ -65,11 +65,7 @@ impl ProblemFile {
     /// [`Invalid`] with the place inside the file.
     pub(super) fn functions(&self) -> Result<Functions, Invalid> {
         let is_plain = |mode: &ModeFile| mode.models == super::models::ModeModels::default();
-        let is_named = matches!(
-            self.measurement,
-            MeasurementFile::Formulas { .. } | MeasurementFile::Model { .. }
-        );
-        if self.definitions.is_empty() && !is_named && self.modes.iter().all(is_plain) {
+        if self.definitions.is_empty() && !self.measurement.is_function() && self.modes.iter().all(is_plain) {
             let modes = self.modes.iter().map(|_| [None, None]).collect();
             return Ok(Functions { modes, sensor: None });
         }
@@ -245,17 +241,16 @@ fn measured(id: &str, parameters: &ModelParameters, state: &Space) -> Result<(Sp
 
 /// The model of a name, if it is of the kind that is wanted; the nearest name is one of that kind.
 fn named(id: &str, kind: ModelKind, place: &str) -> Result<&'static Model, Invalid> {
-    let found = model(id).map_err(|error| {
+    model(id).map_err(|error| {
         let of_kind = models().iter().filter(|model| model.kind == kind);
         let near = nearest(id, of_kind.map(|model| model.id.as_str())).or(error.nearest);
         let near = near.map_or_else(String::new, |near| format!("; the nearest name is `{near}`"));
         let reason = format!("is {:?}, and there is no such model{near}", error.id);
         Invalid::new(Class::Unknown, format!("{place}.model"), reason)
-    })?;
-    Ok(found)
+    })
 }
 
-/// ModelParameters as exact numbers.
+/// Parameters as exact numbers.
 fn numbers(parameters: &ModelParameters) -> Vec<(&str, Rational)> {
     let exact = parameters.0.iter();
     exact

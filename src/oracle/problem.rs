@@ -179,6 +179,13 @@ pub struct FixedGainFile {
     pub innovation_covariance: Rows,
 }
 
+impl MeasurementFile {
+    /// Whether it is given by formulas or by a model.
+    pub(super) fn is_function(&self) -> bool {
+        matches!(self, Self::Formulas { .. } | Self::Model { .. })
+    }
+}
+
 impl FilterFile {
     /// The kind's short name: `kalman`, `unscented`, the rule's, `converted`, `fixed-gain` or, where no estimates are mixed,
     /// `fixed-gain-unmixed`.

@@ -39,10 +39,7 @@ impl ProblemFile {
                 return Some(format!("problem.modes[{j}].{key}"));
             }
         }
-        if matches!(
-            self.measurement,
-            MeasurementFile::Formulas { .. } | MeasurementFile::Model { .. }
-        ) {
+        if self.measurement.is_function() {
             return Some("problem.measurement.kind".to_owned());
         }
         let mut steps = self.measurements.iter().enumerate();
