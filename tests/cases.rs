@@ -5,8 +5,10 @@
 
 #![allow(clippy::float_cmp, reason = "zeros and ones of a file are exact")]
 
+mod common;
 mod published;
 
+use common::program::names;
 use immaculate::file::digest;
 use immaculate::imm::{Failure, Quantity};
 use immaculate::number::Real;
@@ -573,14 +575,4 @@ fn temporary(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("cases").join(name);
     let _ = std::fs::remove_dir_all(&folder);
     folder
-}
-
-/// The names of the files in a folder, in order.
-fn names(folder: &Path) -> Vec<String> {
-    let entries = std::fs::read_dir(folder).unwrap();
-    let mut names: Vec<String> = entries
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
-    names.sort();
-    names
 }
