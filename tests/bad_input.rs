@@ -311,7 +311,7 @@ fn the_kalman_filter_has_linear_measurements_only() {
         scene.problem.filters = filters;
         assert_sentence(
             &scene,
-            "`measurement` is not linear, and a filter without points has no other; use a cubature filter (zhu2016 (42))",
+            "`measurement` is not linear, and the Kalman filter takes matrices; use an extended, unscented or cubature filter (zhu2016 (42))",
         );
     }
 }
@@ -345,7 +345,7 @@ fn the_kalman_filter_has_linear_motions_only() {
         } else {
             assert_sentence(
                 &scene,
-                "`modes[1].f` is not linear, and a filter without points has no other; use a cubature filter (zhu2016 (42))",
+                "`modes[1].f` is not linear, and the Kalman filter takes matrices; use an extended, unscented or cubature filter (zhu2016 (42))",
             );
         }
     }
@@ -431,7 +431,7 @@ fn fixed_gains_are_checked_mode_by_mode() {
     scene.problem.sensor = polar([0, 2], [0.0, 0.0]);
     assert_sentence(
         &scene,
-        "`measurement` is not linear, and a filter without points has no other; use a cubature filter (zhu2016 (42))",
+        "`measurement` is not linear, and the Kalman filter takes matrices; use an extended, unscented or cubature filter (zhu2016 (42))",
     );
     assert!(fixed_gain_scene().filter().is_ok());
 }
@@ -883,7 +883,7 @@ fn a_filter_keeps_its_problem_when_it_is_to_go_on_with_a_wrong_one() {
         ),
         (
             |scene| scene.problem.sensor = polar([0, 2], [0.0, 0.0]),
-            "`measurement` is not linear, and a filter without points has no other; use a cubature filter (zhu2016 (42))",
+            "`measurement` is not linear, and the Kalman filter takes matrices; use an extended, unscented or cubature filter (zhu2016 (42))",
         ),
         (
             |scene| scene.problem.filters = vec![Filter::converted(Conversion::Standard)],
@@ -1310,6 +1310,32 @@ fn a_measurement_that_no_mode_can_explain_is_refused() {
         vector![1e200, 0.0],
         "step 1, mode `all`, mode_probabilities: the log-likelihood of the measurement under all modes together is not finite",
     );
+}
+
+#[test]
+fn a_function_without_a_slope_where_it_is_linearised_is_named() {
+    let mut scene = polar_scene("cubature-3");
+    scene.problem.filters = vec![Filter::extended()];
+    // The sensor stands where the first mode expects the target.
+    let expected = scene.problem.modes[0].motion.of(&scene.initial.modes[0].mean);
+    scene.problem.modes.truncate(1);
+    scene.problem.chain = vec![vec![1.0]];
+    scene.initial.modes.truncate(1);
+    scene.initial.mode_probabilities = vec![1.0];
+    let Sensor::Polar { position, location, .. } = &mut scene.problem.sensor else {
+        panic!("a radar");
+    };
+    *location = position.map(|entry| expected[entry]);
+    let (name, mut filter) = (scene.problem.modes[0].name.clone(), scene.filter().unwrap());
+    let failure = filter.step(Some(&vector![10.0, 0.5])).unwrap_err();
+    assert_eq!(
+        failure.to_string(),
+        format!(
+            "step 1, mode `{name}`, measurement_jacobian: the function has no finite slope at the mean, as range and bearing have \
+             none at the sensor"
+        )
+    );
+    assert_eq!(filter.current().step, 0);
 }
 
 #[test]
@@ -1779,6 +1805,7 @@ fn cause_test(cause: &Cause) -> &'static str {
         Cause::BearingOutOfRange { .. } => "a_bearing_in_degrees_is_refused",
         Cause::NegativeRange { .. } => "a_negative_range_and_a_bearing_in_degrees_are_refused",
         Cause::EstimateNotFinite => "an_estimate_that_overflows_is_an_error_even_without_a_detection",
+        Cause::NoSlope => "a_function_without_a_slope_where_it_is_linearised_is_named",
         Cause::NoEvidence => "a_measurement_that_no_mode_can_explain_is_refused",
     }
 }

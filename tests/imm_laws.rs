@@ -18,6 +18,7 @@ use common::{
     fixed_gain_scene, linear_scene, linear_scene_with, mode, polar_scene, polar_scene_seen_from, rounding_of, rule_of,
     truth,
 };
+use immaculate::filter::extended::measurement_jacobian;
 use immaculate::filter::fixed_gain::FixedGain;
 use immaculate::filter::{Filter, Transform, Update, cubature, kalman, raw, update};
 use immaculate::gaussian::{Gaussian, log_density, mixture_covariance, mixture_mean};
@@ -1038,7 +1039,7 @@ fn given_mut(filter: &mut Filter<f64, U4, U2>) -> &mut FixedGain<f64, U4, U2> {
 // Other filters in other modes
 
 /// A filter with points for one of its two transforms and matrices for the other, both ways, and one with points of two rules.
-fn half_filters(rule: &str) -> [Filter<f64, U4, U2>; 3] {
+fn half_filters(rule: &str) -> [Filter<f64, U4, U2>; 5] {
     let points = |name: &str| Transform::Points(rule_of(name));
     let filter = |predict, update| Filter {
         predict,
@@ -1048,6 +1049,8 @@ fn half_filters(rule: &str) -> [Filter<f64, U4, U2>; 3] {
         filter(Transform::Exact, points(rule)),
         filter(points(rule), Transform::Exact),
         filter(points(rule), points("cubature-3")),
+        filter(Transform::Linearised, points(rule)),
+        filter(points(rule), Transform::Linearised),
     ]
 }
 
@@ -1057,12 +1060,13 @@ fn half_filters(rule: &str) -> [Filter<f64, U4, U2>; 3] {
 fn with_linear_models_modes_of_any_filters_are_kalman_filters() {
     let kalman = linear_scene().run();
     for rule in RULES {
-        let [measured, moved, both] = half_filters(rule);
+        let [measured, moved, both, at_slopes, to_slopes] = half_filters(rule);
         for filters in [
             vec![measured.clone(), Filter::kalman(), Filter::kalman()],
             vec![Filter::kalman(), both, measured.clone()],
             vec![moved.clone(), measured, Filter::points(rule_of(rule))],
             vec![moved],
+            vec![at_slopes, to_slopes, Filter::extended()],
         ] {
             let mut scene = linear_scene();
             scene.problem.filters = filters;
@@ -1106,7 +1110,7 @@ fn points_for_the_measurement_alone_are_points_for_both() {
 /// come in that order.
 #[test]
 fn each_mode_has_its_own_filter() {
-    let [measured, moved, both] = half_filters("simplex-5");
+    let [measured, moved, both, ..] = half_filters("simplex-5");
     let points = |rule| Filter::points(rule_of(rule));
     for (scene, filters) in [
         (linear_scene(), [Filter::kalman(), measured.clone(), both]),
@@ -1199,7 +1203,7 @@ fn changing_problems(scene: &Scene, filters: &[Vec<Filter<f64, U4, U2>>]) -> Vec
 #[test]
 fn a_problem_that_changes_is_a_new_filter_from_the_last_estimates() {
     let points = |rule| vec![Filter::points(rule_of(rule))];
-    let [measured, moved, both] = half_filters("cubature-5");
+    let [measured, moved, both, ..] = half_filters("cubature-5");
     let kalman = || Filter::kalman();
     let gains = fixed_gain_scene();
     let mut reversed = gains.problem.filters.clone();
@@ -1354,6 +1358,7 @@ impl<T: number::Real> AtRunTime<T> {
     fn transform<const N: usize>(&self, transform: &Transform<f64, Const<N>>) -> Transform<T, Dyn> {
         match transform {
             Transform::Exact => Transform::Exact,
+            Transform::Linearised => Transform::Linearised,
             Transform::Points(rule) => Transform::Points(self.rule(rule)),
         }
     }
@@ -1479,7 +1484,7 @@ fn sides_known_at_run_time_give_the_same_bits_with_four_entries() {
         scenes.push((format!("{conversion:?}"), converted_scene(conversion, [300.0, -200.0])));
     }
     let mut of_many = polar_scene("cubature-3");
-    let [measured, _, both] = half_filters("simplex-5");
+    let [measured, _, both, ..] = half_filters("simplex-5");
     of_many.problem.filters = vec![measured, Filter::converted(Conversion::Standard), both];
     scenes.push(("different filters".into(), of_many));
     let mut unmixed = linear_scene();
@@ -1827,7 +1832,7 @@ fn plain_run(scene: &Scene, j: usize) -> Vec<Gaussian<f64, U4>> {
     for z in &scene.measurements {
         let Gaussian { mean, covariance } = &estimate;
         let predicted = match &problem.filter(j).predict {
-            Transform::Exact => Gaussian {
+            Transform::Exact | Transform::Linearised => Gaussian {
                 mean: kalman::predicted_mean(&mode.motion.matrix(), mean),
                 covariance: kalman::predicted_covariance(&mode.motion.matrix(), covariance, &mode.noise),
             },
@@ -1861,10 +1866,10 @@ fn plain_update(scene: &Scene, j: usize, predicted: &Gaussian<f64, U4>, z: &Vect
         panic!("a filter that computes its gain from the measurement as it is");
     };
     let (expected, innovation_covariance, cross_covariance) = match transform {
-        Transform::Exact => {
-            let h = scene.problem.h();
+        Transform::Exact | Transform::Linearised => {
+            let h = measurement_jacobian(sensor, &predicted.mean);
             (
-                h.as_ref() * predicted.mean,
+                sensor.of(&predicted.mean),
                 kalman::innovation_covariance(&h, &predicted.covariance, noise),
                 kalman::cross_covariance(&predicted.covariance, &h),
             )

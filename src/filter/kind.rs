@@ -25,6 +25,8 @@ where
 {
     /// Through a matrix, exactly: [`kalman`](super::kalman).
     Exact,
+    /// The mean through the function, the covariance through its Jacobian: [`extended`](super::extended).
+    Linearised,
     /// By the points of a rule, unscented and Gauss-Hermite rules included: [`cubature`](super::cubature).
     Points(Rule<T, N>),
 }
@@ -77,6 +79,44 @@ where
         Self {
             predict: Transform::Exact,
             update: Update::By(Transform::Exact),
+        }
+    }
+
+    /// The extended Kalman filter: motion and measurement at their slopes.
+    ///
+    /// Source: Smith, Schmidt and McGee 1962; Bar-Shalom, Li and Kirubarajan 2001, section 10.3.
+    ///
+    /// Example: a target expected 3 m east and 4 m north, of which the range is measured.
+    ///
+    /// ```
+    /// use immaculate::filter::Filter;
+    /// use immaculate::{gaussian::Gaussian, imm::{Imm, Initial, Interaction, Problem}};
+    /// use immaculate::model::{PolarComponent, Sensor, motion::{Mode, Motion}};
+    /// use nalgebra::{Matrix2, matrix, vector};
+    ///
+    /// let problem = Problem {
+    ///     modes: vec![Mode { name: "still".into(), motion: Motion::Linear(Matrix2::identity()), noise: Matrix2::zeros() }],
+    ///     filters: vec![Filter::extended()],
+    ///     interaction: Interaction::Imm,
+    ///     chain: vec![vec![1.0]],
+    ///     sensor: Sensor::Polar { components: vec![PolarComponent::Range], position: [0, 1], location: [0.0, 0.0] },
+    ///     measurement_noise: matrix![75.0],
+    /// };
+    /// let expected = Gaussian { mean: vector![3.0, 4.0], covariance: Matrix2::identity() * 25.0 };
+    /// let initial = Initial { modes: vec![expected], mode_probabilities: vec![1.0] };
+    /// let mut filter = Imm::new(problem, &initial)?;
+    /// let step = filter.step(Some(&vector![9.0]))?;
+    /// // H = [3/5, 4/5], S = 25 + 75, W = 25 Hᵀ / 100, and 9 m are 4 m more than the expected 5 m.
+    /// assert_eq!(step.measurement_jacobians[0], Some(matrix![0.6, 0.8]));
+    /// assert!((step.updated[0].mean - vector![3.6, 4.8]).norm() < 1e-15);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// Evidence: `a_step_of_an_extended_filter_is_its_equations` (extended).
+    pub fn extended() -> Self {
+        Self {
+            predict: Transform::Linearised,
+            update: Update::By(Transform::Linearised),
         }
     }
 
@@ -198,21 +238,22 @@ where
 
     /// The rules of its points, for the motion and for the measurement, where it draws any.
     pub fn rules(&self) -> [Option<&Rule<T, N>>; 2] {
-        let rule = |transform| match transform {
-            &Transform::Exact => None,
+        let predict = match &self.predict {
             Transform::Points(rule) => Some(rule),
+            _ => None,
         };
-        let Update::By(update) = &self.update else {
-            return [rule(&self.predict), None];
+        let update = match &self.update {
+            Update::By(Transform::Points(rule)) => Some(rule),
+            _ => None,
         };
-        [rule(&self.predict), rule(update)]
+        [predict, update]
     }
 
     /// As [`Filter::rules`], to be changed.
     pub fn rules_mut(&mut self) -> [Option<&mut Rule<T, N>>; 2] {
         let predict = match &mut self.predict {
-            Transform::Exact => None,
             Transform::Points(rule) => Some(rule),
+            _ => None,
         };
         let update = match &mut self.update {
             Update::By(Transform::Points(rule)) => Some(rule),

@@ -1,11 +1,11 @@
 //! One filter: prediction and update of a single Gaussian.
 //!
-//! After this folder the reader knows the kinds of filter that run inside the interacting multiple model filter, and that the first two
-//! share their last three equations:
+//! After this folder the reader knows the kinds of filter that run inside the interacting multiple model filter, and that those that
+//! compute their gain share their last three equations:
 //!
 //! ```text
 //! kalman:    x̂, P ─ F, Q ─▶ predicted ─ H, R ─▶ ẑ, S, C ────────────────────────────┐
-//!                                                                                   ├─▶ update
+//! extended:  the same, with the Jacobians of f and h as F and H ────────────────────┼─▶ update
 //! cubature:  x̂, P ─▶ points ─ f, Q ─▶ predicted ─▶ fresh points ─ h, R ─▶ ẑ, S, C ──┘
 //! ```
 //!
@@ -13,6 +13,7 @@
 //!
 //! - [`kind`]: which of these a filter is, said once;
 //! - [`kalman`]: the linear equations;
+//! - [`extended`]: the same at the slopes of motion and measurement;
 //! - [`cubature`]: the same moments by points and weights, in the centred form of liu2017;
 //! - [`raw`]: the moments about the origin that zhu2016 prints, equal in exact arithmetic and poorer in floating point;
 //! - [`update`]: gain, updated mean, updated covariance, for both;
@@ -55,6 +56,7 @@
 
 pub mod converted;
 pub mod cubature;
+pub mod extended;
 pub mod fixed_gain;
 pub mod kalman;
 pub mod kind;

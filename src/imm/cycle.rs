@@ -282,6 +282,14 @@ where
         now.propagated_points.push(points);
         now.predicted[j].mean = (e.predicted_mean)(problem, previous, now, j);
         observer.computed(Quantity::PredictedMean, j, now);
+        let jacobian = (e.motion_jacobian)(problem, previous, now, j);
+        if let Some(jacobian) = &jacobian {
+            check_slopes(problem, now, j, Quantity::MotionJacobian, all_finite(jacobian))?;
+        }
+        now.motion_jacobians.push(jacobian);
+        if now.motion_jacobians[j].is_some() {
+            observer.computed(Quantity::MotionJacobian, j, now);
+        }
         if problem.has_covariances() {
             now.predicted[j].covariance = (e.predicted_covariance)(problem, previous, now, j);
             observer.computed(Quantity::PredictedCovariance, j, now);
@@ -434,6 +442,14 @@ where
     let innovation = (e.innovation)(problem, z, now, j);
     now.innovations.push(innovation);
     observer.computed(Quantity::Innovation, j, now);
+    let jacobian = (e.measurement_jacobian)(problem, previous, now, j);
+    if let Some(jacobian) = &jacobian {
+        check_slopes(problem, now, j, Quantity::MeasurementJacobian, all_finite(jacobian))?;
+    }
+    now.measurement_jacobians.push(jacobian);
+    if now.measurement_jacobians[j].is_some() {
+        observer.computed(Quantity::MeasurementJacobian, j, now);
+    }
     let covariance = (e.innovation_covariance)(problem, previous, now, j);
     now.innovation_covariances.push(covariance);
     observer.computed(Quantity::InnovationCovariance, j, now);
@@ -456,4 +472,21 @@ where
     now.log_likelihoods.push(log_likelihood);
     observer.computed(Quantity::LogLikelihood, j, now);
     Ok(())
+}
+
+/// A function has a slope where it is linearised.
+fn check_slopes<T: Real, N: Dim, M: Dim>(
+    problem: &Problem<T, N, M>,
+    now: &Step<T, N, M>,
+    j: usize,
+    value: Quantity,
+    are_finite: bool,
+) -> Result<(), Failure>
+where
+    Shapes: Holds<N, M>,
+{
+    if are_finite {
+        return Ok(());
+    }
+    Err(failure(problem, now, Some(j), value.name(), Cause::NoSlope))
 }

@@ -17,12 +17,13 @@
 use super::probability;
 use super::problem::Interaction;
 use super::{Problem, Step};
-use crate::filter::{Transform, Update, converted, cubature, kalman, raw, update};
+use crate::filter::{Transform, Update, converted, cubature, extended, kalman, raw, update};
 use crate::gaussian::{log_density, mixture_covariance, mixture_mean};
 use crate::matrix::{Holds, NotPositiveDefinite, Shapes, check_positive_definite, ldl};
 use crate::model::motion::Motion;
 use crate::number::{Field, Real};
 use nalgebra::{Dim, OMatrix, OVector};
+use std::borrow::Cow;
 
 /// An equation: from the problem, the step before, the step so far, and the mode (0 for a value of all modes together).
 pub type Equation<T, N, M, V> = fn(&Problem<T, N, M>, &Step<T, N, M>, &Step<T, N, M>, usize) -> V;
@@ -56,6 +57,8 @@ where
     pub propagated_points: Equation<T, N, M, Points<T, N>>,
     /// Predicted mean, [`kalman::predicted_mean`] or [`cubature::weighted_mean`].
     pub predicted_mean: Equation<T, N, M, OVector<T, N>>,
+    /// F, [`extended::motion_jacobian`]; none for a filter that does not linearise the motion.
+    pub motion_jacobian: Equation<T, N, M, Option<OMatrix<T, N, N>>>,
     /// Predicted covariance, [`kalman::predicted_covariance`] or [`cubature::weighted_covariance`].
     pub predicted_covariance: Equation<T, N, M, OMatrix<T, N, N>>,
     /// Mean of the combined prediction, [`mixture_mean`] under the predicted mode probabilities.
@@ -74,6 +77,8 @@ where
     pub predicted_measurement: Equation<T, N, M, OVector<T, M>>,
     /// ν, [`Sensor::difference`](crate::model::Sensor::difference).
     pub innovation: OfMeasurement<T, N, M, OVector<T, M>>,
+    /// H, [`extended::measurement_jacobian`]; none for a filter that does not linearise the measurement.
+    pub measurement_jacobian: Equation<T, N, M, Option<OMatrix<T, M, N>>>,
     /// S, [`kalman::innovation_covariance`] or [`cubature::innovation_covariance`].
     pub innovation_covariance: Equation<T, N, M, OMatrix<T, M, M>>,
     /// C, [`kalman::cross_covariance`] or [`cubature::cross_covariance`].
@@ -138,7 +143,7 @@ where
             },
 
             mixed_points: |problem, _, now, j| match &problem.filter(j).predict {
-                Transform::Exact => Ok(Vec::new()),
+                Transform::Exact | Transform::Linearised => Ok(Vec::new()),
                 Transform::Points(rule) => cubature::points(rule, &now.mixed[j]),
             },
             propagated_points: |problem, _, now, j| {
@@ -149,16 +154,23 @@ where
                 }
             },
             predicted_mean: |problem, _, now, j| match &problem.filter(j).predict {
-                Transform::Exact => match &problem.modes[j].motion {
+                Transform::Exact | Transform::Linearised => match &problem.modes[j].motion {
                     Motion::Linear(f) => kalman::predicted_mean(f, &now.mixed[j].mean),
                     motion => motion.of(&now.mixed[j].mean),
                 },
                 Transform::Points(rule) => cubature::weighted_mean(&rule.weights, &now.propagated_points[j]),
             },
+            motion_jacobian: |problem, _, now, j| match &problem.filter(j).predict {
+                Transform::Linearised => Some(extended::motion_jacobian(&problem.modes[j].motion, &now.mixed[j].mean)),
+                Transform::Exact | Transform::Points(_) => None,
+            },
             predicted_covariance: |problem, _, now, j| {
-                let (f, q) = (&problem.modes[j].motion, &problem.modes[j].noise);
+                let q = &problem.modes[j].noise;
                 match &problem.filter(j).predict {
-                    Transform::Exact => kalman::predicted_covariance(&f.matrix(), &now.mixed[j].covariance, q),
+                    Transform::Exact | Transform::Linearised => {
+                        let f = motion_matrix(problem, now, j);
+                        kalman::predicted_covariance(&f, &now.mixed[j].covariance, q)
+                    }
                     Transform::Points(rule) => {
                         let (points, mean) = (&now.propagated_points[j], &now.predicted[j].mean);
                         cubature::weighted_covariance(&rule.covariance_weights, points, mean, q)
@@ -197,6 +209,12 @@ where
             innovation: |problem, z, now, j| {
                 difference(problem, used(problem, z, now, j), &now.predicted_measurements[j], j)
             },
+            measurement_jacobian: |problem, _, now, j| match &problem.filter(j).update {
+                Update::By(Transform::Linearised) => {
+                    Some(extended::measurement_jacobian(&problem.sensor, &now.predicted[j].mean))
+                }
+                _ => None,
+            },
             innovation_covariance: |problem, _, now, j| match &problem.filter(j).update {
                 Update::By(Transform::Points(rule)) => cubature::innovation_covariance(
                     &problem.sensor,
@@ -206,9 +224,9 @@ where
                     &problem.measurement_noise,
                 ),
                 Update::Given(given) => given.innovation_covariance.clone(),
-                Update::By(Transform::Exact) | Update::Converted(_) => {
-                    let noise = noise(problem, now, j);
-                    kalman::innovation_covariance(&problem.h(), &now.predicted[j].covariance, noise)
+                Update::By(Transform::Exact | Transform::Linearised) | Update::Converted(_) => {
+                    let (h, noise) = (measurement_matrix(problem, now, j), noise(problem, now, j));
+                    kalman::innovation_covariance(&h, &now.predicted[j].covariance, noise)
                 }
             },
             cross_covariance: |problem, _, now, j| match &problem.filter(j).update {
@@ -220,7 +238,7 @@ where
                     &now.measured_points[j],
                     &now.predicted_measurements[j],
                 ),
-                _ => kalman::cross_covariance(&now.predicted[j].covariance, &problem.h()),
+                _ => kalman::cross_covariance(&now.predicted[j].covariance, &measurement_matrix(problem, now, j)),
             },
 
             gain: |problem, _, now, j| {
@@ -317,7 +335,9 @@ where
     pub fn with_raw_moments(self) -> Self {
         Self {
             predicted_covariance: |problem, previous, now, j| match &problem.filter(j).predict {
-                Transform::Exact => (Self::standard().predicted_covariance)(problem, previous, now, j),
+                Transform::Exact | Transform::Linearised => {
+                    (Self::standard().predicted_covariance)(problem, previous, now, j)
+                }
                 Transform::Points(rule) => {
                     let (points, mean) = (&now.propagated_points[j], &now.predicted[j].mean);
                     raw::raw_covariance(&rule.covariance_weights, points, mean, &problem.modes[j].noise)
@@ -342,6 +362,36 @@ where
             },
             ..self
         }
+    }
+}
+
+/// F as the filter of mode j uses it: the Jacobian of its motion where it linearises, else the matrix of the motion.
+pub(crate) fn motion_matrix<'a, T: Real, N: Dim, M: Dim>(
+    problem: &'a Problem<T, N, M>,
+    now: &'a Step<T, N, M>,
+    j: usize,
+) -> Cow<'a, OMatrix<T, N, N>>
+where
+    Shapes: Holds<N, M>,
+{
+    match now.motion_jacobians.get(j) {
+        Some(Some(jacobian)) => Cow::Borrowed(jacobian),
+        _ => problem.modes[j].motion.matrix(),
+    }
+}
+
+/// H as the filter of mode j uses it: the Jacobian of the measurement where it linearises, else the matrix [`Problem::h`].
+pub(crate) fn measurement_matrix<'a, T: Real, N: Dim, M: Dim>(
+    problem: &'a Problem<T, N, M>,
+    now: &'a Step<T, N, M>,
+    j: usize,
+) -> Cow<'a, OMatrix<T, M, N>>
+where
+    Shapes: Holds<N, M>,
+{
+    match now.measurement_jacobians.get(j) {
+        Some(Some(jacobian)) => Cow::Borrowed(jacobian),
+        _ => problem.h(),
     }
 }
 

@@ -54,6 +54,9 @@ pub enum Cause {
         /// The bearing.
         bearing: String,
     },
+    /// A function has no slope at the mean where it is linearised, as range and bearing at the sensor.
+    #[error("the function has no finite slope at the mean, as range and bearing have none at the sensor")]
+    NoSlope,
     /// The combined estimate has an entry that is not finite: the problem's numbers are beyond the number system.
     #[error("the combined estimate has an entry that is not finite")]
     EstimateNotFinite,

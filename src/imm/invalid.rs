@@ -73,8 +73,10 @@ pub enum InvalidProblem {
         /// The equation that needs it.
         equation: &'static str,
     },
-    /// A filter without points was given a motion or a measurement that is not linear.
-    #[error("`{field}` is not linear, and a filter without points has no other; use a cubature filter (zhu2016 (42))")]
+    /// A Kalman filter was given a motion or a measurement that is not linear.
+    #[error(
+        "`{field}` is not linear, and the Kalman filter takes matrices; use an extended, unscented or cubature filter (zhu2016 (42))"
+    )]
     NotLinear {
         /// The measurement, or the motion of a mode.
         field: String,

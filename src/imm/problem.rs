@@ -9,7 +9,7 @@
 //! ```
 
 use super::record::Needs;
-use crate::filter::Filter;
+use crate::filter::{Filter, Transform, Update};
 use crate::gaussian::Gaussian;
 use crate::matrix::{Holds, Shapes, rows};
 use crate::model::sensor::position_matrix;
@@ -147,11 +147,13 @@ where
         self.filters.iter().find_map(Filter::conversion)
     }
 
-    /// Whether what a value needs is there, apart from a detection.
-    pub fn has(&self, needed: Needs) -> bool {
+    /// Whether what a value needs is there in mode j, apart from a detection.
+    pub fn has(&self, needed: Needs, j: usize) -> bool {
         match needed {
             Needs::Covariances => self.has_covariances(),
             Needs::Conversion => self.conversion().is_some(),
+            Needs::LinearisedMotion => self.filter(j).predict == Transform::Linearised,
+            Needs::LinearisedMeasurement => self.filter(j).update == Update::By(Transform::Linearised),
             Needs::Detection => true,
         }
     }

@@ -34,6 +34,8 @@ where
     pub mixed_points: Vec<Vec<OVector<T, N>>>,
     /// The propagated points, `[j][s]`.
     pub propagated_points: Vec<Vec<OVector<T, N>>>,
+    /// F, the Jacobians of the motions at the mixed means; of filters that linearise.
+    pub motion_jacobians: Vec<Option<OMatrix<T, N, N>>>,
     /// The predicted estimates.
     pub predicted: Vec<Gaussian<T, N>>,
     /// The combined estimate before the measurement.
@@ -42,6 +44,8 @@ where
     pub converted_measurement: Option<OVector<T, M>>,
     /// R^c, the covariance of the converted measurement.
     pub converted_covariance: Option<OMatrix<T, M, M>>,
+    /// H, the Jacobians of the measurement at the predicted means; of filters that linearise.
+    pub measurement_jacobians: Vec<Option<OMatrix<T, M, N>>>,
     /// Points drawn afresh from the predicted estimates, `[j][s]`; none for a filter that draws none.
     pub predicted_points: Vec<Vec<OVector<T, N>>>,
     /// The measurements of these points, `[j][s]`.
@@ -85,12 +89,14 @@ where
             predicted_mode_probabilities: mode_probabilities.to_vec(),
             mixing_probabilities: vec![mode_probabilities.to_vec(); estimates.len()],
             mixed: estimates.to_vec(),
+            motion_jacobians: Vec::new(),
             mixed_points: Vec::new(),
             propagated_points: Vec::new(),
             predicted: estimates.to_vec(),
             combined_prediction: estimates[0].clone(),
             converted_measurement: None,
             converted_covariance: None,
+            measurement_jacobians: Vec::new(),
             predicted_points: Vec::new(),
             measured_points: Vec::new(),
             predicted_measurements: Vec::new(),
@@ -110,10 +116,12 @@ where
 
     /// Takes out every value that comes from a measurement or is drawn anew: what stands there from an earlier step is not this step's.
     pub(super) fn clear(&mut self) {
+        self.motion_jacobians.clear();
         self.mixed_points.clear();
         self.propagated_points.clear();
         self.converted_measurement = None;
         self.converted_covariance = None;
+        self.measurement_jacobians.clear();
         self.predicted_points.clear();
         self.measured_points.clear();
         self.predicted_measurements.clear();
@@ -162,6 +170,10 @@ pub enum Needs {
     Detection,
     /// A filter that converts measurements.
     Conversion,
+    /// A filter that linearises the motion.
+    LinearisedMotion,
+    /// A filter that linearises the measurement.
+    LinearisedMeasurement,
 }
 
 /// A row of the table: what is known of a traced value.
@@ -271,6 +283,7 @@ macro_rules! values {
     (@place $step:ident, $j:ident, $get:ident, $as:ident, $field:ident) => { $step.$field };
     (@place $step:ident, $j:ident, $get:ident, $as:ident, $field:ident . $part:ident) => { $step.$field.$part };
     (@place $step:ident, $j:ident, $get:ident, $as:ident, $field:ident ? $some:ident) => { $step.$field.$as()? };
+    (@place $step:ident, $j:ident, $get:ident, $as:ident, $field:ident [$mode:ident] ? $some:ident) => { $step.$field.$get($j)?.$as()? };
     (@place $step:ident, $j:ident, $get:ident, $as:ident, $field:ident [$mode:ident]) => { $step.$field.$get($j)? };
     (@place $step:ident, $j:ident, $get:ident, $as:ident, $field:ident [$mode:ident] . $part:ident) => { $step.$field.$get($j)?.$part };
 }
@@ -287,6 +300,8 @@ values! {
         mixed[j].covariance, "zhu2016 (56), liu2017 (12)";
     PredictedMean "predicted.mean" (State, One) each []
         predicted[j].mean, "zhu2016 (21), liu2017 (17)";
+    MotionJacobian "motion_jacobian" (State, State) each [LinearisedMotion]
+        motion_jacobians[j]? f, "Bar-Shalom, Li and Kirubarajan 2001, section 10.3";
     PredictedCovariance "predicted.covariance" (State, State) each [Covariances]
         predicted[j].covariance, "zhu2016 (24), liu2017 (17)";
     CombinedPredictionMean "combined_prediction.mean" (State, One) all []
@@ -301,6 +316,8 @@ values! {
         predicted_measurements[j], "zhu2016 (42), liu2017 (19)";
     Innovation "innovation" (Measurement, One) each [Detection]
         innovations[j], "zhu2016 (52), liu2017 (20)";
+    MeasurementJacobian "measurement_jacobian" (Measurement, State) each [LinearisedMeasurement, Detection]
+        measurement_jacobians[j]? h, "Bar-Shalom, Li and Kirubarajan 2001, section 10.3";
     InnovationCovariance "innovation_covariance" (Measurement, Measurement) each [Detection]
         innovation_covariances[j], "zhu2016 (45), liu2017 (19)";
     CrossCovariance "cross_covariance" (State, Measurement) each [Covariances, Detection]
@@ -334,9 +351,9 @@ pub enum Input {
 use Input::{Before, Now};
 use Quantity::{
     CombinedCovariance, CombinedMean, CombinedPredictionCovariance, CombinedPredictionMean, ConvertedCovariance,
-    ConvertedMeasurement, CrossCovariance, Gain, Innovation, InnovationCovariance, LogLikelihood, MixedCovariance,
-    MixedMean, MixingProbabilities, ModeProbabilities, PredictedCovariance, PredictedMean, PredictedMeasurement,
-    PredictedModeProbabilities, UpdatedCovariance, UpdatedMean,
+    ConvertedMeasurement, CrossCovariance, Gain, Innovation, InnovationCovariance, LogLikelihood, MeasurementJacobian,
+    MixedCovariance, MixedMean, MixingProbabilities, ModeProbabilities, MotionJacobian, PredictedCovariance,
+    PredictedMean, PredictedMeasurement, PredictedModeProbabilities, UpdatedCovariance, UpdatedMean,
 };
 
 impl Quantity {
@@ -391,10 +408,12 @@ impl Quantity {
         usize::from(*rows != Side::One) + usize::from(*columns != Side::One)
     }
 
-    /// Whether it is a covariance, and so symmetric.
+    /// Whether it is a covariance of one vector, and so symmetric; a Jacobian with as many rows as columns is not.
     pub fn is_covariance(self) -> bool {
-        let Row { rows, columns, .. } = self.row();
-        self.rank() == 2 && rows == columns
+        let Row {
+            rows, columns, name, ..
+        } = self.row();
+        name.ends_with("covariance") && rows == columns
     }
 
     /// What it is computed from, besides the problem and the measurement, where `has` says what is there.
@@ -423,7 +442,13 @@ impl Quantity {
                 Before(UpdatedCovariance),
             ],
             PredictedMean => &[Now(MixedMean), Now(MixedCovariance)],
-            PredictedCovariance => &[Now(MixedMean), Now(MixedCovariance), Now(PredictedMean)],
+            MotionJacobian => &[Now(MixedMean)],
+            PredictedCovariance => &[
+                Now(MixedMean),
+                Now(MixedCovariance),
+                Now(MotionJacobian),
+                Now(PredictedMean),
+            ],
             CombinedPredictionMean => &[Now(PredictedModeProbabilities), Now(PredictedMean)],
             CombinedPredictionCovariance => &[
                 Now(PredictedModeProbabilities),
@@ -435,13 +460,20 @@ impl Quantity {
             // What was measured alone. (By the convention `at-prediction` R^c is of the combined prediction instead.)
             ConvertedMeasurement | ConvertedCovariance => &[],
             Innovation => &[Now(PredictedMeasurement), Now(ConvertedMeasurement)],
+            MeasurementJacobian => &[Now(PredictedMean)],
             InnovationCovariance => &[
                 Now(PredictedMean),
                 Now(PredictedCovariance),
                 Now(PredictedMeasurement),
+                Now(MeasurementJacobian),
                 Now(ConvertedCovariance),
             ],
-            CrossCovariance => &[Now(PredictedMean), Now(PredictedCovariance), Now(PredictedMeasurement)],
+            CrossCovariance => &[
+                Now(PredictedMean),
+                Now(PredictedCovariance),
+                Now(PredictedMeasurement),
+                Now(MeasurementJacobian),
+            ],
             Gain => &[Now(InnovationCovariance), Now(CrossCovariance)],
             UpdatedMean if has_detection => &[Now(PredictedMean), Now(Gain), Now(Innovation)],
             UpdatedMean => &[Now(PredictedMean)],

@@ -156,7 +156,7 @@ where
     pub fn reports(&self, component: usize) -> Option<PolarComponent> {
         match self {
             Self::Linear(_) | Self::Function { .. } => None,
-            Self::Polar { components, .. } => Some(components[component]),
+            Self::Polar { components, .. } => components.get(component).copied(),
         }
     }
 
@@ -187,7 +187,7 @@ where
     pub fn is_angle(&self, component: usize) -> bool {
         match self {
             Self::Linear(_) => false,
-            Self::Polar { components, .. } => components[component] == PolarComponent::Bearing,
+            Self::Polar { .. } => self.reports(component) == Some(PolarComponent::Bearing),
             Self::Function { space, .. } => space.is_angle(component),
         }
     }
