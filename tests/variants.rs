@@ -11,6 +11,7 @@ use immaculate::gaussian::{Gaussian, log_density};
 use immaculate::imm::record::Input;
 use immaculate::imm::{Equations, Initial, Interaction, Needs, Problem, Quantity};
 use immaculate::matrix::ldl;
+use immaculate::model::function::Function;
 use immaculate::model::motion::{Mode, Motion};
 use immaculate::model::{Conversion, PolarComponent, Sensor};
 use immaculate::number::Enclosure;
@@ -185,7 +186,7 @@ fn a_variant_changes_nothing_where_it_does_not_apply() {
             left_alone.insert(format!("{:?}", variant.applies));
         }
     }
-    assert_eq!(left_alone.len(), 12, "each limit was met: {left_alone:?}");
+    assert_eq!(left_alone.len(), 14, "each limit was met: {left_alone:?}");
 }
 
 /// Exact, by hand: the words for where a variant can make a difference, in filters of each kind.
@@ -365,11 +366,12 @@ fn a_value_is_computed_from_its_inputs_and_from_nothing_else() {
         polar("cubature-3"),
         converted(Conversion::Standard),
         fixed(Interaction::Imm),
+        extended(),
     ] {
         let shown = setup.run().values;
         let before = setup.run_along(&shown, |value| value, Triangle::Lower).values;
         let is_detected = |step: usize| setup.measurements[step - 1].is_some();
-        let has = |step, needed| setup.problem.has(needed) && (is_detected(step) || needed != Needs::Detection);
+        let has = |step, needed| setup.problem.has(needed, 0) && (is_detected(step) || needed != Needs::Detection);
         let exists = |step, quantity: Quantity| quantity.exists(|needed| has(step, needed));
         let pair = |step, quantity: Quantity, input: Input| {
             let has_covariances = setup.problem.has_covariances();
@@ -445,6 +447,7 @@ fn without_a_detection_nothing_is_computed_from_one() {
         let has = |needed| match needed {
             Needs::Covariances => covariances,
             Needs::Conversion => conversions,
+            Needs::LinearisedMotion | Needs::LinearisedMeasurement => covariances && !conversions,
             Needs::Detection => false,
         };
         for quantity in Quantity::ALL.into_iter().filter(|quantity| quantity.exists(has)) {
@@ -571,6 +574,8 @@ fn scenes() -> Vec<Scene> {
         ("simplex", polar("simplex-5")),
         ("scaled unscented", other_order),
         ("square", square(2)),
+        ("extended", extended()),
+        ("changing steps", changing()),
         ("scalar", generic(1, 2, Sensor::Linear(dmatrix![0.8]), Filter::kalman())),
     ];
     scenes.map(|(name, setup)| Scene { name, setup }).into()
@@ -660,6 +665,41 @@ fn polar(rule: &str) -> Setup<f64> {
         *z = Some(dvector![52.0 + 1.3 * value(200 + k), bearings[k]]);
     }
     setup.measurements[3] = None;
+    setup
+}
+
+/// Kalman filters whose steps differ.
+fn changing() -> Setup<f64> {
+    let mut setup = linear(3);
+    for step in [2, 4, 5] {
+        let (mut problem, k) = (setup.problem.clone(), index(step));
+        for mode in &mut problem.modes {
+            *mode.motion.matrix_mut().unwrap() *= 1.0 + 0.05 * k;
+            mode.noise *= 1.0 + 0.3 * k;
+        }
+        problem.measurement_noise *= 1.0 + 0.2 * k;
+        setup.changes.insert(step, problem);
+    }
+    setup
+}
+
+/// Extended filters of range and bearing; the first mode moves along a curve.
+fn extended() -> Setup<f64> {
+    let mut setup = polar(RULE);
+    setup.problem.filters = vec![Filter::extended()];
+    let state = ["x", "vx", "y", "vy"];
+    let curve = [
+        ("x", "x + 0.9*vx*cos(0.3*vy) - 0.05*y"),
+        ("vx", "0.95*vx - 0.1*vx*vy"),
+        ("y", "y + 0.9*vy + 0.02*x*vx/10"),
+        ("vy", "0.9*vy + 0.1*sin(vx)"),
+    ];
+    let function = Function::of_formulas(&state, &[], &[], &[], &curve).unwrap();
+    setup.problem.modes[0].motion = Motion::Function {
+        function: function.into(),
+        given: Vec::new(),
+    };
+    assert_eq!(setup.problem.check(&setup.initial).err(), None);
     setup
 }
 
@@ -781,6 +821,7 @@ fn on_enclosures(setup: &Setup<f64>) -> Setup<Enclosure> {
 fn filter_on_enclosures(filter: &Filter<f64, Dyn, Dyn>) -> Filter<Enclosure, Dyn, Dyn> {
     let transform = |transform: &Transform<f64, Dyn>| match transform {
         Transform::Exact => Transform::Exact,
+        Transform::Linearised => Transform::Linearised,
         Transform::Points(rule) => Transform::Points(Rule {
             points: rule.points.iter().map(|point| point.map(Enclosure::exact)).collect(),
             weights: list(&rule.weights),

@@ -16,7 +16,7 @@ pub(super) fn apply<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
 
 /// The measurement function, of the points and of the centre about which their bearings are averaged.
 fn of_function<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
-    let is_polar = !is_linear(&setup.problem) && draws_points(setup);
+    let is_polar = !setup.problems().all(is_linear) && draws_points(setup);
     if !is_polar {
         return FUNCTIONS.contains(&id);
     }

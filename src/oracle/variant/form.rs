@@ -3,7 +3,7 @@
 //! After this file the reader knows how else a right filter may be written; what differs is rounding alone.
 
 use super::super::setup::Setup;
-use super::{draws_points, is_linear, noise, sum_of_covariance_weights, weights};
+use super::{draws_points, is_linear, measurement_matrix, motion_matrix, noise, sum_of_covariance_weights, weights};
 use crate::filter::{cubature, kalman};
 use crate::gaussian::{Gaussian, mixture_covariance, mixture_mean};
 use crate::imm::Equations;
@@ -30,7 +30,7 @@ fn of_mean<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     // x̂ = P (P⁻⁻¹ x̂⁻ + Hᵀ R⁻¹ z), P = (P⁻⁻¹ + Hᵀ R⁻¹ H)⁻¹
     if has_information(setup) {
         setup.equations.updated_mean = |problem, _, now, j| {
-            let h = problem.h().into_owned();
+            let h = measurement_matrix(problem, now, j).into_owned();
             let of_measurement = h.transpose() * inverse(noise(problem, now, j));
             let before = inverse(&now.predicted[j].covariance);
             let mean = &now.predicted[j].mean;
@@ -75,7 +75,7 @@ fn of_update<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
         "information-update" => {
             if has_information {
                 *entry = |problem, _, now, j| {
-                    let h = problem.h();
+                    let h = measurement_matrix(problem, now, j);
                     let information = h.transpose() * solve(&ldl(noise(problem, now, j)), &h);
                     inverse(&(inverse(&now.predicted[j].covariance) + information))
                 }
@@ -142,7 +142,7 @@ fn of_inverse<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
 /// Moments of points and mixtures.
 fn of_moments<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let points = draws_points(setup);
-    let is_raw = points && is_linear(&setup.problem) && sums_to_one(&setup.problem);
+    let is_raw = points && setup.problems().all(is_linear) && sums_to_one(&setup.problem);
     let equations = &mut setup.equations;
     match id {
         // zhu2016 (24) completed, (45), (48)
@@ -193,7 +193,7 @@ fn of_prediction<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
             if !points {
                 equations.predicted_covariance = |problem, _, now, j| {
                     let mode = &problem.modes[j];
-                    let f = &*mode.motion.matrix();
+                    let f = &*motion_matrix(problem, now, j);
                     f * (&now.mixed[j].covariance * f.transpose()) + &mode.noise
                 }
             }
@@ -203,7 +203,7 @@ fn of_prediction<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
             equations.predicted_mean = |problem, _, now, j| problem.modes[j].motion.of(&now.mixed[j].mean);
             equations.predicted_covariance = |problem, _, now, j| {
                 let mode = &problem.modes[j];
-                kalman::predicted_covariance(&mode.motion.matrix(), &now.mixed[j].covariance, &mode.noise)
+                kalman::predicted_covariance(&motion_matrix(problem, now, j), &now.mixed[j].covariance, &mode.noise)
             };
         }
         _ => return false,
@@ -244,7 +244,7 @@ fn reverse_points<T: Real>(equations: &mut Equations<T, Dyn, Dyn>) {
 
 /// I − W H.
 fn rest<T: Real>(problem: &Problem<T, Dyn, Dyn>, now: &Step<T, Dyn, Dyn>, j: usize) -> DMatrix<T> {
-    identity(problem.n().0) - &now.gains[j] * &*problem.h()
+    identity(problem.n().0) - &now.gains[j] * &*measurement_matrix(problem, now, j)
 }
 
 /// The inverse of a positive definite matrix, formed.

@@ -139,9 +139,12 @@ fn of_measurements<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
         }
         // θ π / 180 of a bearing that is in radians already
         "degrees-for-radians" => {
-            for z in measurements.iter_mut().flatten() {
-                for row in (0..z.len()).filter(|&row| is_bearing(&setup.problem, row)) {
-                    z[row] *= degree();
+            for (index, z) in measurements.iter_mut().enumerate() {
+                let problem = setup.changes.get(&(index + 1)).unwrap_or(&setup.problem);
+                for z in z.iter_mut() {
+                    for row in (0..z.len()).filter(|&row| is_bearing(problem, row)) {
+                        z[row] *= degree();
+                    }
                 }
             }
         }

@@ -3,7 +3,7 @@
 //! After this file the reader knows how the Gaussian density of a residual is miscalculated, and of which residual.
 
 use super::super::setup::Setup;
-use super::{diagonal, difference, draws_points, noise, number, seen, used};
+use super::{diagonal, difference, draws_points, measurement_matrix, noise, number, seen, used};
 use crate::filter::kalman;
 use crate::gaussian::log_density;
 use crate::imm::printed::{log_density_21, log_density_57};
@@ -68,7 +68,7 @@ fn of_updated_arguments<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
         "likelihood-of-updated-covariance" => {
             if !points {
                 *entry = |problem, _, now, j| {
-                    let (h, covariance) = (problem.h(), &now.updated[j].covariance);
+                    let (h, covariance) = (measurement_matrix(problem, now, j), &now.updated[j].covariance);
                     let s = kalman::innovation_covariance(&h, covariance, noise(problem, now, j));
                     log_density(&now.innovations[j], &ldl(&s))
                 }
@@ -78,7 +78,7 @@ fn of_updated_arguments<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
         "likelihood-of-updated-estimate" => {
             if !points {
                 *entry = |problem, _, now, j| {
-                    let (h, covariance) = (problem.h(), &now.updated[j].covariance);
+                    let (h, covariance) = (measurement_matrix(problem, now, j), &now.updated[j].covariance);
                     let s = kalman::innovation_covariance(&h, covariance, noise(problem, now, j));
                     log_density(&updated_residual(problem, now, j), &ldl(&s))
                 }
@@ -91,7 +91,7 @@ fn of_updated_arguments<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
 
 /// Another covariance, or a part of it, given to the density.
 fn of_other_arguments<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
-    let is_scalar = setup.problem.m().0 == 1;
+    let is_scalar = setup.problems().all(|problem| problem.m().0 == 1);
     let entry = &mut setup.equations.log_likelihood;
     match id {
         // S = R

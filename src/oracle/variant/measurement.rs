@@ -3,7 +3,7 @@
 //! After this file the reader knows how R is lost or counted twice, and which points and means are taken for others.
 
 use super::super::setup::Setup;
-use super::{difference, draws_points, noise, seen, sum_of_covariance_weights, used, weights};
+use super::{difference, draws_points, measurement_matrix, noise, seen, sum_of_covariance_weights, used, weights};
 use crate::filter::{cubature, kalman};
 use crate::imm::{Equations, Problem, Step};
 use crate::number::Real;
@@ -70,11 +70,12 @@ fn of_innovation_covariance<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
         "measured-before-the-prediction" => {
             if !points {
                 equations.innovation_covariance = |problem, _, now, j| {
-                    let h = problem.h();
+                    let h = measurement_matrix(problem, now, j);
                     kalman::innovation_covariance(&h, &now.mixed[j].covariance, noise(problem, now, j))
                 };
-                equations.cross_covariance =
-                    |problem, _, now, j| kalman::cross_covariance(&now.mixed[j].covariance, &problem.h());
+                equations.cross_covariance = |problem, _, now, j| {
+                    kalman::cross_covariance(&now.mixed[j].covariance, &measurement_matrix(problem, now, j))
+                };
             }
         }
         _ => return false,
@@ -105,8 +106,9 @@ fn of_cross_covariance<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
         // C = P⁰ʲ Hᵀ
         "cross-covariance-of-mixed-covariance" => {
             if !points {
-                equations.cross_covariance =
-                    |problem, _, now, j| kalman::cross_covariance(&now.mixed[j].covariance, &problem.h());
+                equations.cross_covariance = |problem, _, now, j| {
+                    kalman::cross_covariance(&now.mixed[j].covariance, &measurement_matrix(problem, now, j))
+                };
             }
         }
         _ => return false,

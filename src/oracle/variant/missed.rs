@@ -19,9 +19,9 @@ pub(super) fn apply<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
 fn of_measurement<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     match id {
         "missed-detection-as-zero" => {
-            let m = setup.problem.m().0;
-            for measurement in &mut setup.measurements {
-                measurement.get_or_insert_with(|| DVector::zeros(m));
+            for (index, measurement) in setup.measurements.iter_mut().enumerate() {
+                let problem = setup.changes.get(&(index + 1)).unwrap_or(&setup.problem);
+                measurement.get_or_insert_with(|| DVector::zeros(problem.m().0));
             }
         }
         "missed-detection-as-the-last-measurement" => {
@@ -87,10 +87,10 @@ fn of_probability<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
         }
         // N(0; 0, S) with the S of the last detection
         "last-covariance-used-again" => {
-            equations.undetected_log_likelihood = |problem, previous, _, j| match previous.measurement {
+            equations.undetected_log_likelihood = |_, previous, _, j| match previous.measurement {
                 Some(_) => {
                     let factors = ldl(&previous.innovation_covariances[j]);
-                    Some(log_density(&DVector::zeros(problem.m().0), &factors))
+                    Some(log_density(&DVector::zeros(factors.diagonal.len()), &factors))
                 }
                 None => Some(last_likelihood(previous, j)),
             };

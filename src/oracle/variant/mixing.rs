@@ -3,6 +3,7 @@
 //! After this file the reader knows how the two indices of a Markov chain, and the means about which a spread is taken, go astray.
 
 use super::super::setup::Setup;
+use crate::filter::extended::motion_jacobian;
 use crate::filter::kalman;
 use crate::gaussian::{Gaussian, mixture_covariance, mixture_mean};
 use crate::imm::probability::{mixing_probability, predicted_mode_probability};
@@ -233,7 +234,11 @@ fn own_predictions<T: Real>(problem: &Problem<T, Dyn, Dyn>, now: &Step<T, Dyn, D
     let modes = problem.modes.iter().zip(&now.mixed);
     let predictions = modes.map(|(mode, start)| Gaussian {
         mean: mode.motion.of(&start.mean),
-        covariance: kalman::predicted_covariance(&mode.motion.matrix(), &start.covariance, &mode.noise),
+        covariance: kalman::predicted_covariance(
+            &motion_jacobian(&mode.motion, &start.mean),
+            &start.covariance,
+            &mode.noise,
+        ),
     });
     predictions.collect()
 }

@@ -9,6 +9,8 @@
 //! | `input`         | none: the problem was read wrongly                                   |
 //! | `mixing`        | predicted mode probabilities, mixing probabilities, mixed estimates  |
 //! | `prediction`    | predicted estimates                                                  |
+//! | `linearisation` | the Jacobians of extended filters                                    |
+//! | `step`          | what differs from step to step                                       |
 //! | `points`        | the points and weights of a rule                                     |
 //! | `measurement`   | predicted measurement, innovation and their covariances              |
 //! | `bearing`       | the measurement function of range and bearing, and its angles        |
@@ -34,6 +36,7 @@ mod fixed_gain;
 mod form;
 mod input;
 mod likelihood;
+mod linearisation;
 mod measurement;
 mod missed;
 mod mixing;
@@ -41,12 +44,13 @@ mod points;
 mod prediction;
 mod probability;
 mod square_root;
+mod step;
 mod update;
 
 use super::setup::Setup;
-use crate::filter::cubature;
+use crate::filter::{Filter, Transform, Update, cubature};
 use crate::gaussian::Gaussian;
-use crate::imm::equations::{Factored, difference, noise, seen, used};
+use crate::imm::equations::{Factored, difference, measurement_matrix, motion_matrix, noise, seen, used};
 use crate::imm::{Needs, Problem, Quantity, Step};
 use crate::model::{PolarComponent, Sensor};
 use crate::number::Real;
@@ -92,6 +96,11 @@ pub enum Applies {
     Conversions,
     /// In Kalman filters.
     Kalman,
+    /// In filters that linearise the motion or the measurement.
+    Linearised,
+    /// In problems whose steps differ.
+    #[serde(rename = "changing steps")]
+    ChangingSteps,
     /// In filters that carry covariances.
     Covariances,
     /// In filters with fixed gains.
@@ -122,6 +131,8 @@ impl Applies {
             Self::Points => "points",
             Self::Conversions => "conversions",
             Self::Kalman => "kalman",
+            Self::Linearised => "linearised",
+            Self::ChangingSteps => "changing steps",
             Self::Covariances => "covariances",
             Self::FixedGains => "fixed gains",
             Self::EmbeddedMotion => "embedded motion",
@@ -141,6 +152,13 @@ impl Applies {
             Self::Points => draws_points(setup),
             Self::Conversions => problem.conversion().is_some(),
             Self::Kalman => !draws_points(setup) && problem.has_covariances(),
+            Self::Linearised => {
+                let linearises = |filter: &Filter<T, Dyn, Dyn>| {
+                    filter.predict == Transform::Linearised || filter.update == Update::By(Transform::Linearised)
+                };
+                problem.filters.iter().any(linearises)
+            }
+            Self::ChangingSteps => !setup.changes.is_empty(),
             Self::Covariances => problem.has_covariances(),
             Self::FixedGains => !problem.has_covariances(),
             Self::EmbeddedMotion => problem
@@ -152,10 +170,16 @@ impl Applies {
                 (0..problem.n().0).any(|entry| (1..problem.modes.len()).contains(&lacks(entry)))
             }
             Self::Angles => {
-                problem.conversion().is_none() && (0..problem.m().0).any(|row| problem.sensor.is_angle(row))
+                let has_angle =
+                    |problem: &Problem<T, Dyn, Dyn>| (0..problem.m().0).any(|row| problem.sensor.is_angle(row));
+                problem.conversion().is_none() && setup.problems().any(has_angle)
             }
             Self::Bearings => {
-                (0..problem.m().0).any(|row| problem.sensor.reports(row) == Some(PolarComponent::Bearing))
+                let is_bearing =
+                    |sensor: &Sensor<T, Dyn, Dyn>, row| sensor.reports(row) == Some(PolarComponent::Bearing);
+                setup
+                    .problems()
+                    .any(|problem| (0..problem.m().0).any(|row| is_bearing(&problem.sensor, row)))
             }
             Self::Missed => setup.measurements.iter().any(Option::is_none),
             Self::SeveralModes => problem.modes.len() > 1,
@@ -273,6 +297,9 @@ pub fn apply<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     if !setup.problem.has_covariances() && find(id).is_some_and(Variant::needs_covariances) {
         return true;
     }
+    if step::apply(id, setup) {
+        return true;
+    }
     if setup.changes.is_empty() {
         return apply_once(id, setup);
     }
@@ -298,6 +325,7 @@ fn apply_once<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     input::apply(id, setup)
         || mixing::apply(id, setup)
         || prediction::apply(id, setup)
+        || linearisation::apply(id, setup)
         || points::apply(id, setup)
         || measurement::apply(id, setup)
         || bearing::apply(id, setup)

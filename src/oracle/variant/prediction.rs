@@ -3,7 +3,7 @@
 //! After this file the reader knows the mistakes that can be made in F P Fᵀ + Q.
 
 use super::super::setup::Setup;
-use super::{draws_points, sum_of_covariance_weights, weights, zero_rows};
+use super::{draws_points, motion_matrix, sum_of_covariance_weights, weights, zero_rows};
 use crate::filter::{cubature, kalman, raw};
 use crate::imm::Equations;
 use crate::matrix::mirrored;
@@ -42,7 +42,7 @@ fn of_noise<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
             setup.equations.predicted_covariance = |problem, _, now, j| {
                 let mode = &problem.modes[j];
                 let covariance = &now.mixed[j].covariance + &mode.noise;
-                kalman::predicted_covariance(&mode.motion.matrix(), &covariance, &(&mode.noise * T::zero()))
+                kalman::predicted_covariance(&motion_matrix(problem, now, j), &covariance, &(&mode.noise * T::zero()))
             }
         }
         // Σₛ wₛ [ (X*ₛ − x̂⁻)(X*ₛ − x̂⁻)ᵀ + Q ], where the weights do not sum to one
@@ -67,9 +67,13 @@ fn of_mean<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
         // what was mixed is not used: F x̂ʲ, F Pʲ Fᵀ + Q
         "prediction-from-own-estimate" => {
             equations.predicted_mean = |problem, previous, _, j| problem.modes[j].motion.of(&previous.updated[j].mean);
-            equations.predicted_covariance = |problem, previous, _, j| {
+            equations.predicted_covariance = |problem, previous, now, j| {
                 let mode = &problem.modes[j];
-                kalman::predicted_covariance(&mode.motion.matrix(), &previous.updated[j].covariance, &mode.noise)
+                kalman::predicted_covariance(
+                    &motion_matrix(problem, now, j),
+                    &previous.updated[j].covariance,
+                    &mode.noise,
+                )
             };
         }
         // x̂⁻ = x̂⁰ʲ
@@ -113,7 +117,7 @@ fn of_covariance<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
             if !points {
                 *entry = |problem, _, now, j| {
                     let mode = &problem.modes[j];
-                    let transposed = mode.motion.matrix().transpose();
+                    let transposed = motion_matrix(problem, now, j).transpose();
                     kalman::predicted_covariance(&transposed, &now.mixed[j].covariance, &mode.noise)
                 }
             }
@@ -126,7 +130,7 @@ fn of_covariance<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
         "motion-on-one-side" => {
             *entry = |problem, _, now, j| {
                 let mode = &problem.modes[j];
-                mirrored(&*mode.motion.matrix() * &now.mixed[j].covariance + &mode.noise)
+                mirrored(&*motion_matrix(problem, now, j) * &now.mixed[j].covariance + &mode.noise)
             }
         }
         // zhu2016 (24) as printed: Σₛ wₛ X*ₛ X*ₛᵀ
@@ -146,9 +150,13 @@ fn of_covariance<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
         }
         // F P Fᵀ + Q of the combined P, while the means are the modes' own
         "prediction-of-combined-covariance" => {
-            *entry = |problem, previous, _, j| {
+            *entry = |problem, previous, now, j| {
                 let mode = &problem.modes[j];
-                kalman::predicted_covariance(&mode.motion.matrix(), &previous.combined.covariance, &mode.noise)
+                kalman::predicted_covariance(
+                    &motion_matrix(problem, now, j),
+                    &previous.combined.covariance,
+                    &mode.noise,
+                )
             }
         }
         _ => return false,

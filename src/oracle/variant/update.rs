@@ -3,7 +3,7 @@
 //! After this file the reader knows the mistakes that can be made in C S⁻¹, x̂⁻ + W ν and P⁻ − W S Wᵀ.
 
 use super::super::setup::Setup;
-use super::{diagonal, draws_points, noise};
+use super::{diagonal, draws_points, measurement_matrix, noise};
 use crate::filter::{kalman, update};
 use crate::imm::equations::Factored;
 use crate::imm::{Problem, Step};
@@ -19,7 +19,7 @@ pub(super) fn apply<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
 /// The gain.
 fn of_gain<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let points = draws_points(setup);
-    let is_square = setup.problem.n() == setup.problem.m();
+    let is_square = setup.problems().all(|problem| problem.n() == problem.m());
     let entry = &mut setup.equations.gain;
     match id {
         // derbez2000 (2) as printed: P⁰ʲ Hᵀ (H P⁰ʲ Hᵀ + R)⁻¹
@@ -33,7 +33,8 @@ fn of_gain<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
             if !points {
                 setup.equations.gain = gain_of_mixed;
                 setup.equations.updated_covariance = |problem, _, now, j| {
-                    let rest = DMatrix::identity(problem.n().0, problem.n().0) - &now.gains[j] * &*problem.h();
+                    let rest = DMatrix::identity(problem.n().0, problem.n().0)
+                        - &now.gains[j] * &*measurement_matrix(problem, now, j);
                     rest * &now.mixed[j].covariance
                 }
             }
@@ -68,8 +69,11 @@ fn of_gain<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
         // W of step k−1; its own where there was none
         "gain-of-the-step-before" => {
             *entry = |_, previous, now, j| match previous.measurement {
-                Some(_) => Ok(previous.gains[j].clone()),
-                None => gain(&now.cross_covariances[j], &now.innovation_covariances[j]),
+                // A gain of another sensor may have no place here.
+                Some(_) if previous.gains[j].shape() == now.cross_covariances[j].shape() => {
+                    Ok(previous.gains[j].clone())
+                }
+                _ => gain(&now.cross_covariances[j], &now.innovation_covariances[j]),
             }
         }
         _ => return false,
@@ -166,7 +170,7 @@ fn gain_of_mixed<T: Real>(
     now: &Step<T, Dyn, Dyn>,
     j: usize,
 ) -> Factored<DMatrix<T>> {
-    let (h, covariance) = (problem.h(), &now.mixed[j].covariance);
+    let (h, covariance) = (measurement_matrix(problem, now, j), &now.mixed[j].covariance);
     let s = kalman::innovation_covariance(&h, covariance, noise(problem, now, j));
     gain(&kalman::cross_covariance(covariance, &h), &s)
 }

@@ -1,0 +1,37 @@
+//! Variants of problems whose steps differ: what is taken from the first step for all.
+//!
+//! After this file the reader knows how a filter goes wrong that was written for equal steps.
+
+use super::super::setup::Setup;
+use crate::imm::Problem;
+use crate::number::Real;
+use nalgebra::Dyn;
+
+/// Applies a variant of the steps; whether it is one.
+pub(super) fn apply<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
+    let change: fn(&mut Problem<T, Dyn, Dyn>, &Problem<T, Dyn, Dyn>) = match id {
+        "motion-of-the-first-step" => |problem, first| {
+            for (mode, first) in problem.modes.iter_mut().zip(&first.modes) {
+                mode.motion.clone_from(&first.motion);
+            }
+        },
+        "process-noise-of-the-first-step" => |problem, first| {
+            for (mode, first) in problem.modes.iter_mut().zip(&first.modes) {
+                mode.noise.clone_from(&first.noise);
+            }
+        },
+        // of a sensor of another dimension no program can take it
+        "measurement-noise-of-the-first-step" => |problem, first| {
+            if problem.measurement_noise.shape() == first.measurement_noise.shape() {
+                problem.measurement_noise.clone_from(&first.measurement_noise);
+            }
+        },
+        _ => return false,
+    };
+    let first = setup.problem_of(1).clone();
+    change(&mut setup.problem, &first);
+    for problem in setup.changes.values_mut() {
+        change(problem, &first);
+    }
+    true
+}
