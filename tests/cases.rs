@@ -80,7 +80,7 @@ fn there_are_many_short_problems_and_few_long_ones() {
     let problems = all();
     let long = problems.iter().filter(|problem| problem.measurements.len() > 6).count();
     assert!((70..150).contains(&problems.len()), "{}", problems.len());
-    assert!(long < 18, "{long}");
+    assert!(long < 20, "{long}");
     for problem in &problems {
         let steps = problem.measurements.len();
         let expected = match steps {
@@ -269,15 +269,30 @@ fn flags_of_filters_and_angles_are_true() {
     for problem in all() {
         let id = &problem.id;
         let is_linear = matches!(problem.measurement, MeasurementFile::Linear { .. });
-        let has_points = matches!(
-            problem.filter,
-            FilterFile::Cubature { .. } | FilterFile::Unscented { .. }
-        );
+        let draws = |filter: &FilterFile| matches!(filter, FilterFile::Cubature { .. } | FilterFile::Unscented { .. });
+        let has_points = (0..problem.modes.len()).any(|mode| draws(problem.filter_of(mode)));
+        let is_extended = matches!(problem.filter, FilterFile::Extended {});
         let is_fixed = matches!(problem.filter, FilterFile::FixedGain { .. });
         assert_eq!(has(&problem, "fixed-gain"), is_fixed, "{id}");
         let is_converted = matches!(problem.filter, FilterFile::Converted { .. });
         assert_eq!(has(&problem, "converted"), is_converted, "{id}");
-        assert_eq!(has(&problem, "as-kalman"), is_linear && has_points, "{id}");
+        assert_eq!(
+            has(&problem, "as-kalman"),
+            is_linear && (has_points || is_extended),
+            "{id}"
+        );
+        assert_eq!(has(&problem, "several-sensors"), !problem.sensors.is_empty(), "{id}");
+        let is_same = |step: usize| {
+            let entry = &problem.measurements[step];
+            let keeps_length = entry.interval.is_none();
+            keeps_length
+                && entry.transitions.is_none()
+                && entry.noises.is_none()
+                && entry.noise.is_none()
+                && entry.transition.is_none()
+        };
+        let changes = !(0..problem.measurements.len()).all(is_same);
+        assert_eq!(has(&problem, "changing-steps"), changes, "{id}");
 
         let run = run(&problem);
         assert_eq!(has(&problem, "negative-weight"), run.has_negative_weight, "{id}");
@@ -289,10 +304,12 @@ fn flags_of_filters_and_angles_are_true() {
             let s = of(Quantity::InnovationCovariance);
             let z = problem.measurements[step - 1].z.as_ref().unwrap();
             let m = z.len();
-            for row in (0..m).filter(|&row| problem.is_bearing(row) && !is_converted) {
+            let sensor = problem.sensor_of(&problem.measurements[step - 1]).unwrap();
+            let angles = problem.angles_of(&problem.sensors_at()[sensor]);
+            for row in (0..m).filter(|&row| angles[row] && !is_converted) {
                 wraps |= (z[row] - predicted[row] - innovation[row]).abs() > 1.0;
                 // A point of every rule in use lies beyond one standard deviation.
-                straddles |= predicted[row].abs() + s[row * m + row].sqrt() > f64::pi();
+                straddles |= has_points && predicted[row].abs() + s[row * m + row].sqrt() > f64::pi();
             }
         }
         assert_eq!(has(&problem, "wrap"), wraps, "{id}");

@@ -3,7 +3,7 @@
 //! After this file the reader knows every word by which cases are marked and chosen, and what a problem with it is like.
 
 /// Every flag, and what a problem with it is like.
-pub const FLAGS: [(&str, &str); 46] = [
+pub const FLAGS: [(&str, &str); 49] = [
     (
         "single-equation",
         "All is trivial but one equation, or one group of them.",
@@ -115,5 +115,14 @@ pub const FLAGS: [(&str, &str); 46] = [
         "A mode lacks an entry of the state that another has; how they are mixed is a convention.",
     ),
     ("embedded", "A motion sets an entry of the state to zero."),
+    (
+        "formulas",
+        "A motion or a measurement is a formula or a named model that is no matrix.",
+    ),
+    (
+        "several-sensors",
+        "Sensors of different dimensions see in different steps.",
+    ),
+    ("changing-steps", "F, Q, R or the chain are others in some steps."),
     ("rejected", "It must be refused."),
 ];

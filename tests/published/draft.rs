@@ -122,6 +122,7 @@ impl Draft {
             modes,
             measurement: MeasurementFile::Linear { matrix: Vec::new() },
             noise: Vec::new(),
+            sensors: Vec::new(),
             filter: FilterFile::Kalman {},
             transition: identity(r),
             initial: InitialFile {

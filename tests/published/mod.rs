@@ -10,6 +10,7 @@
 //! - `runs`: the papers' scenarios;
 //! - `converted`: filters that convert their measurements, modes of unequal dimensions, and the scenario of the paper that has both;
 //! - `fixed_gain`: filters whose gains are given, and the scenario of the paper that has them;
+//! - `extended`: extended filters, several sensors, and steps that differ;
 //! - `rejected`: problems that must be refused;
 //! - `write`: how a new case is certified, written and locked.
 
@@ -18,6 +19,7 @@ mod chain;
 mod converted;
 mod draft;
 mod equations;
+mod extended;
 mod fixed_gain;
 mod numbers;
 mod rejected;
@@ -43,6 +45,7 @@ pub fn all() -> Vec<ProblemFile> {
         runs::all(),
         fixed_gain::all(),
         converted::all(),
+        extended::all(),
     ]
     .concat()
 }
