@@ -105,7 +105,8 @@ fn nobody_can_tell_whether_a_drowned_value_is_right() {
 fn a_turn_counts_in_an_innovation_and_not_in_an_expected_bearing() {
     let case = published("step.cubature-3");
     let certified = certified(case);
-    let bearing = (0..2).find(|&row| case.problem.is_bearing(row)).unwrap();
+    let angles = case.problem.angles_of(&case.problem.sensors_at()[0]);
+    let bearing = (0..2).find(|&row| angles[row]).unwrap();
     let turned = |quantity, row: usize, turns: f64| {
         let mut scene = Scene::of(&case.problem, certified);
         let mut values = certified.get(1, quantity, 0).unwrap().clone();
@@ -353,13 +354,13 @@ fn a_quantity_is_explained_for_itself() {
 #[test]
 fn the_noise_is_the_greatest_deviation_of_a_run() {
     let dimensions = Scene::new().problem.dimensions();
-    let mut centre = Trace::empty(dimensions);
+    let mut centre = Trace::empty(&dimensions);
     for (j, value) in [8.0, -4.0].into_iter().enumerate() {
         centre.set(1, Q::UpdatedMean, j, vec![value]);
     }
     let spread_of = |runs: [Option<[f64; 2]>; 3]| {
         let run = |number: u64| {
-            let mut values = Table::empty(dimensions);
+            let mut values = Table::empty(&dimensions);
             for (j, value) in runs[usize::try_from(number).unwrap()].into_iter().flatten().enumerate() {
                 values.set(1, Q::UpdatedMean, j, vec![RandomRounding::exact(value)]);
             }
@@ -470,7 +471,7 @@ fn what_was_never_shown_is_said() {
     let id = "step.n4-m2.two-modes";
     let answer = |problem: &ProblemFile| {
         let certified = certified(published(&problem.id));
-        let mut shown = Trace::empty(problem.dimensions());
+        let mut shown = Trace::empty(&problem.dimensions());
         // The gain of one mode alone is shown, too.
         for place in [(1, Q::PredictedModeProbabilities, 0), (1, Q::Gain, 1)] {
             shown.set(
@@ -530,7 +531,7 @@ fn the_upper_triangle_is_the_lower_one_of_the_transpose() {
 fn a_program_that_stops_where_rounding_is_as_large_as_a_value_is_not_blamed() {
     let outcome = |precision: Precision, id: &str, steps: usize| {
         let mut program = Shows::new(move |problem: &ProblemFile| {
-            let mut shown = Trace::empty(problem.dimensions());
+            let mut shown = Trace::empty(&problem.dimensions());
             let certified = certified(published(&problem.id));
             for place in certified.all_places().filter(|place| place.0 <= steps) {
                 if let Some(values) = certified.get(place.0, place.1, place.2) {
@@ -810,7 +811,7 @@ impl Scene {
     }
 
     fn hide(&mut self, is_hidden: impl Fn(Place) -> bool) {
-        let mut shown = Trace::empty(self.shown.dimensions);
+        let mut shown = Trace::empty(&self.shown.dimensions);
         for place in self.shown.all_places().filter(|place| !is_hidden(*place)) {
             if let Some(values) = self.shown.get(place.0, place.1, place.2) {
                 shown.set(place.0, place.1, place.2, values.clone());
@@ -890,6 +891,7 @@ fn what_was_done(scenes: &[Scene]) -> String {
             case: scene.case(),
             passed: BTreeSet::new(),
             is_faulty: scene.shown != scene.reference.trace,
+            is_beginning: false,
         })
         .collect();
     in_words(&diagnose(&evidence, &[]).unwrap())
@@ -911,7 +913,9 @@ fn in_words(diagnosis: &Diagnosis) -> String {
             joined(filters.iter().map(of_filter).collect(), "; ")
         }
         Diagnosis::Unknown { best, of, .. } if best.is_empty() => format!("none explains any of {of}"),
-        Diagnosis::Unknown { best, unexplained, of } => {
+        Diagnosis::Unknown {
+            best, unexplained, of, ..
+        } => {
             format!("{}, but for [{}] of {of}", ids(best, " or "), unexplained.join(", "))
         }
     }

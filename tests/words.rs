@@ -103,21 +103,25 @@ fn every_kind_of_diagnosis() {
             best: vec![mistake],
             unexplained: (1..=6).map(|number| format!("case-{number}")).collect(),
             of: 8,
+            pairs: true,
         },
         Diagnosis::Unknown {
             best: vec![mistake],
             unexplained: (1..=5).map(|number| format!("case-{number}")).collect(),
             of: 8,
+            pairs: true,
         },
         Diagnosis::Unknown {
             best: vec![mistake],
             unexplained: Vec::new(),
             of: 2,
+            pairs: true,
         },
         Diagnosis::Unknown {
             best: Vec::new(),
             unexplained: vec!["case-1".into()],
             of: 1,
+            pairs: false,
         },
     ] {
         let report = Report {
@@ -226,19 +230,15 @@ fn of_every_outcome() -> Report {
 fn case(id: &str, outcome: Outcome) -> CaseReport {
     CaseReport {
         id: id.into(),
-        filter: FilterFile::Kalman {},
-        dimensions: Dimensions {
-            n: 4,
-            m: 2,
-            r: 2,
-            steps: 2,
-        },
+        filters: vec![FilterFile::Kalman {}; 2],
+        dimensions: Dimensions::new(4, 2, 2, 2),
         outcome,
         judgement: None,
         judged: 0,
         of: 0,
         digits: None,
         stopped: None,
+        certified: None,
     }
 }
 
@@ -300,7 +300,7 @@ fn cases_that_were_verified() {
     let cases = case::all().unwrap();
     let of = |id: &str| cases.iter().find(|case| case.problem.id == id).unwrap();
     let (two, three) = (of("step.n4-m2.two-modes"), of("step.n4-m2.three-modes"));
-    let mut trace = Trace::empty(two.problem.dimensions());
+    let mut trace = Trace::empty(&two.problem.dimensions());
     trace.set(1, ModeProbabilities, 0, vec![0.25, 0.75]);
     trace.set(1, CombinedMean, 0, vec![1.0, 2.0, 3.0, 4.0]);
     let (scale, noise) = (trace.clone(), trace.clone());
@@ -337,11 +337,11 @@ fn a_trace_step_by_step() {
         .find(|case| case.problem.id == "step.n4-m2.two-modes")
         .unwrap()
         .problem;
-    let Dimensions { n, m, r, .. } = problem.dimensions();
+    let dimensions = problem.dimensions();
     // Every value is the number of its place.
-    let mut values = Trace::empty(problem.dimensions());
+    let mut values = Trace::empty(&problem.dimensions());
     for (step, quantity, mode) in values.clone().all_places() {
-        let (rows, columns) = quantity.shape(n, m, r);
+        let (rows, columns) = dimensions.shape(step, quantity);
         let numbers = (0..rows * columns).map(|index| (10 * index + mode) as f64).collect();
         values.set(step, quantity, mode, numbers);
     }

@@ -92,7 +92,8 @@ fn list(select: &Select, as_json: bool) -> Result<Done, Refusal> {
             .iter()
             .map(|case| {
                 let problem = &case.problem;
-                let Dimensions { n, m, r, steps } = problem.dimensions();
+                let Dimensions { n, r, m } = problem.dimensions();
+                let (steps, m) = (m.len(), problem.noise.len());
                 json!({
                     "id": problem.id, "about": problem.about, "flags": problem.flags, "filter": problem.filter,
                     "n": n, "m": m, "modes": r, "steps": steps,

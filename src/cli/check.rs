@@ -4,14 +4,15 @@
 
 use super::progress::bar;
 use super::select::Select;
-use super::{Done, Refusal, json_text};
+use super::{Done, Refusal, json_text, read_file};
 use clap::Args;
-use immaculate::oracle::check::check;
+use immaculate::oracle::check::{check, check_problems};
 use immaculate::oracle::folder::Folder;
+use immaculate::oracle::problem::ProblemFile;
 use immaculate::oracle::process::Process;
 use immaculate::oracle::subject::Subject;
 use immaculate::report;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 #[derive(Args)]
@@ -26,6 +27,9 @@ pub struct CheckArguments {
     /// Judge answer files instead of a program: ID.json or ID.csv for each case, in this folder
     #[arg(long, value_name = "DIR", conflicts_with = "command")]
     answers: Option<PathBuf>,
+    /// Judge by this problem of your own instead of the published cases: a file, or a folder of them (`*.json`); may be given again
+    #[arg(long = "problem", value_name = "FILE", conflicts_with_all = ["cases", "flags", "kinds"])]
+    problems: Vec<PathBuf>,
     #[command(flatten)]
     select: Select,
     /// The time that the program has for each case, in seconds
@@ -49,13 +53,23 @@ pub fn run(arguments: &CheckArguments) -> Result<Done, Refusal> {
             Duration::from_secs(arguments.timeout),
         )),
     };
-    let selected = arguments.select.cases()?.len();
+    let problems = own_problems(&arguments.problems)?;
+    let selected = if arguments.problems.is_empty() {
+        arguments.select.cases()?.len()
+    } else {
+        problems.len()
+    };
     let bar = bar(selected, "checking {wide_bar} {pos}/{len} {msg}");
     let progress = |id: &str| {
         bar.set_message(id.to_owned());
         bar.inc(1);
     };
-    let report = check(subject.as_mut(), &arguments.select.selection(), &progress).map_err(Refusal::request)?;
+    let report = if arguments.problems.is_empty() {
+        check(subject.as_mut(), &arguments.select.selection(), &progress)
+    } else {
+        check_problems(subject.as_mut(), &problems, &progress)
+    };
+    let report = report.map_err(Refusal::request)?;
     bar.finish_and_clear();
     let text = if arguments.json {
         json_text(&report::check_json::json(&report))
@@ -68,4 +82,36 @@ pub fn run(arguments: &CheckArguments) -> Result<Done, Refusal> {
         (false, false) => 0,
     };
     Ok(Done { text, status })
+}
+
+/// The problems of files and of folders, the files of a folder in the order of their names.
+fn own_problems(paths: &[PathBuf]) -> Result<Vec<ProblemFile>, Refusal> {
+    let mut problems = Vec::new();
+    for path in paths {
+        for file in files_of(path)? {
+            let problem = ProblemFile::read(&read_file(&file)?);
+            problems.push(problem.map_err(|invalid| Refusal::Request(format!("{}: {invalid}", file.display())))?);
+        }
+    }
+    Ok(problems)
+}
+
+/// A file itself, or the `*.json` files of a folder; it is a mistake to name a folder without any.
+fn files_of(path: &Path) -> Result<Vec<PathBuf>, Refusal> {
+    if !path.is_dir() {
+        return Ok(vec![path.to_owned()]);
+    }
+    let cannot = |reason: &dyn std::fmt::Display| Refusal::Request(format!("{}: {reason}", path.display()));
+    let mut files = Vec::new();
+    for entry in path.read_dir().map_err(|error| cannot(&error))? {
+        let file = entry.map_err(|error| cannot(&error))?.path();
+        if file.extension().is_some_and(|extension| extension == "json") {
+            files.push(file);
+        }
+    }
+    files.sort();
+    if files.is_empty() {
+        return Err(cannot(&"has no problem file, `*.json`"));
+    }
+    Ok(files)
 }

@@ -1,15 +1,16 @@
 //! `immaculate trace`: runs a problem file and prints every value of every step.
 //!
-//! After this file the reader knows the three forms of a trace: text, JSON and the long CSV, of doubles or of proven digits.
+//! After this file the reader knows the forms of a trace: text, JSON and the long CSV, of doubles or of proven digits, and literals.
 
 use super::{Done, Refusal, json_text, read_file};
 use clap::Args;
-use immaculate::oracle::certify::certified_decimals;
+use immaculate::oracle::certify::{certified_as_far_as_it_goes, certified_decimals};
 use immaculate::oracle::csv;
 use immaculate::oracle::problem::ProblemFile;
 use immaculate::oracle::run::run_in_doubles;
 use immaculate::oracle::trace::{FORMAT, numbers_as_json};
 use immaculate::report;
+use immaculate::report::literal::{self, Language};
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -26,6 +27,9 @@ pub struct TraceArguments {
     /// Print the long CSV instead of text
     #[arg(long, conflicts_with = "digits")]
     csv: bool,
+    /// Print certified doubles as literals of a language, for a unit test
+    #[arg(long = "as", value_name = "LANGUAGE", value_enum, conflicts_with_all = ["digits", "json", "csv"])]
+    language: Option<Language>,
 }
 
 pub fn run(arguments: &TraceArguments) -> Result<Done, Refusal> {
@@ -41,6 +45,10 @@ pub fn run(arguments: &TraceArguments) -> Result<Done, Refusal> {
     };
     let wrong = |error: &dyn std::fmt::Display| Refusal::Request(format!("{name}: {error}"));
     let problem = ProblemFile::read(&text).map_err(|error| wrong(&error))?;
+    if let Some(language) = arguments.language {
+        let (trace, certified) = certified_as_far_as_it_goes(&problem).map_err(|error| wrong(&error))?;
+        return Ok(literal::text(&problem.id, &trace, certified, language).into());
+    }
     let Some(digits) = arguments.digits else {
         let (values, failure) = run_in_doubles(&problem).map_err(|error| wrong(&error))?;
         if arguments.csv {
@@ -61,8 +69,7 @@ pub fn run(arguments: &TraceArguments) -> Result<Done, Refusal> {
     };
     let (decimals, bits) = certified_decimals(&problem, digits).map_err(|error| wrong(&error))?;
     if arguments.json {
-        let dimensions = decimals.dimensions;
-        let steps = decimals.to_json(|quantity, numbers| numbers_as_json(quantity, dimensions, numbers));
+        let steps = decimals.to_json(|place, numbers| numbers_as_json(place, &decimals.dimensions, numbers));
         let value = json!({ "format": FORMAT, "id": problem.id, "digits": digits, "bits": bits, "steps": steps });
         return Ok(json_text(&value).into());
     }

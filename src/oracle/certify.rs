@@ -4,7 +4,7 @@
 //! file. If every number of the trace is enclosed so narrowly that one double is the nearest to all that the enclosure holds, these doubles
 //! are the trace; if not, or if a comparison cannot be decided, it is done again with twice the bits.
 
-use super::invalid::Invalid;
+use super::invalid::{Class, Invalid};
 use super::noise;
 use super::problem::ProblemFile;
 use super::scale::scales;
@@ -88,6 +88,54 @@ pub fn certify_from(problem: &ProblemFile, first_bits: u32) -> Result<Certified,
     with_more_and_more_bits(first_bits, |bits| certify_with(problem, bits)).map(|(certified, _)| certified)
 }
 
+/// The bits with which certification goes as far as it does: some ten seconds for a run of many steps.
+const BITS_OF_A_PREFIX: u32 = 2048;
+
+/// The expected trace of a problem of any length: certified for the steps that are returned, in doubles for those after them.
+///
+/// Twice as many steps are tried as before, until some do not certify with [`BITS_OF_A_PREFIX`]. No value of the doubles is proven; their
+/// rounding noise, by which they are judged, is measured as that of the others is.
+///
+/// # Errors
+///
+/// [`Invalid`] for a problem that is wrong, or whose run in doubles stops before the end.
+pub fn certified_as_far_as_it_goes(problem: &ProblemFile) -> Result<(Trace, usize), Invalid> {
+    problem.check()?;
+    let in_doubles = problem.setup_in_doubles()?.run();
+    if let Some(failure) = in_doubles.failures.first() {
+        return Err(Invalid::new(
+            Class::NotFinite,
+            "problem",
+            format!("cannot be run to its end: {failure}"),
+        ));
+    }
+    let mut trace = in_doubles.in_doubles();
+    let all = problem.measurements.len();
+    let (mut certified, mut bits) = (0, FIRST_BITS);
+    while certified < all && bits <= BITS_OF_A_PREFIX {
+        let steps = (2 * certified).max(8).min(all);
+        let mut beginning = problem.clone();
+        beginning.measurements.truncate(steps);
+        let attempt = Enclosure::with_precision(bits, || {
+            let undecided = |reason| NotCertified::Undecided { reason, bits };
+            nearest(&beginning, &enclosed(&beginning, undecided)?).map_err(undecided)
+        });
+        match attempt {
+            Ok((values, _)) => {
+                for (step, quantity, mode) in values.all_places() {
+                    if let Some(numbers) = values.get(step, quantity, mode) {
+                        trace.set(step, quantity, mode, numbers.clone());
+                    }
+                }
+                certified = steps;
+            }
+            Err(NotCertified::Undecided { .. }) => bits *= 2,
+            Err(NotCertified::Invalid(invalid)) => return Err(invalid),
+        }
+    }
+    Ok((trace, certified))
+}
+
 /// Tries with so many bits, then with twice as many until an attempt is decided; what it gives, and the bits.
 fn with_more_and_more_bits<V>(
     first_bits: u32,
@@ -143,7 +191,7 @@ fn certify_with(problem: &ProblemFile, bits: u32) -> Result<Certified, NotCertif
 /// The first value that is not narrow enough.
 fn nearest(problem: &ProblemFile, values: &Table<Vec<Enclosure>>) -> Result<(Trace, u32), String> {
     let about = about(problem, values);
-    let mut trace = Trace::empty(values.dimensions);
+    let mut trace = Trace::empty(&values.dimensions);
     let mut widest = 0.0_f64;
     for (step, quantity, mode) in values.all_places() {
         let Some(numbers) = values.get(step, quantity, mode) else {
@@ -200,9 +248,9 @@ impl Certified {
             "format": super::trace::FORMAT,
             "id": id,
             "steps": self.trace.steps_as_json(),
-            "scale": self.scale.to_json(|quantity, values| {
+            "scale": self.scale.to_json(|place, values| {
                 let short: Vec<f64> = values.iter().map(|value| rounded(*value, 3)).collect();
-                numbers_as_json(quantity, self.scale.dimensions, &short)
+                numbers_as_json(place, &self.scale.dimensions, &short)
             }),
             "noise": self.noise_by_quantity().to_json(|_, noise| json!(noise)),
         })
@@ -262,7 +310,7 @@ fn decimals_with(problem: &ProblemFile, bits: u32, digits: u32) -> Result<Table<
     Enclosure::with_precision(bits, || {
         let values = enclosed(problem, undecided)?;
         let about = about(problem, &values);
-        let mut decimals = Table::empty(values.dimensions);
+        let mut decimals = Table::empty(&values.dimensions);
         for (step, quantity, mode) in values.all_places() {
             let Some(numbers) = values.get(step, quantity, mode) else {
                 continue;

@@ -4,14 +4,16 @@
 //! filter for, then, if anything is faulty, the search for what was done.
 
 use super::case::{self, BadCase, Case, Expected};
+use super::certify::certified_as_far_as_it_goes;
 use super::diagnose::{Diagnosis, Evidence, diagnose};
 use super::invalid::Invalid;
 use super::judge::{self, Finding, Judged, Judgement, LIMIT, Reference};
-use super::problem::{FilterFile, ProblemFile};
+use super::problem::{FORMAT, FORMAT_2, FilterFile, ProblemFile, kinds};
 use super::subject::{Answer, Broken, Precision, Ready, Subject, echoed};
 use super::trace::{Dimensions, Trace};
 use super::variant::{Variant, catalogue};
 use crate::imm::Quantity;
+use crate::model::nearest::nearest;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Mutex, PoisonError};
 
@@ -33,7 +35,7 @@ impl Selection {
         let any = |wanted: &[String], is: &dyn Fn(&String) -> bool| wanted.is_empty() || wanted.iter().any(is);
         any(&self.ids, &|id| problem.id.starts_with(id.as_str()))
             && any(&self.flags, &|flag| problem.flags.contains(flag))
-            && any(&self.kinds, &|kind| problem.filter.name() == kind)
+            && any(&self.kinds, &|kind| problem.kinds().contains(&kind.as_str()))
     }
 }
 
@@ -56,12 +58,33 @@ pub enum NotMade {
         /// What is known.
         known: String,
     },
+    /// A kind of filter, or a format, that is not known.
+    #[error("the program declares the {what} {name:?}, and there is none of this name{}", .nearest.as_ref().map_or_else(String::new, |near| format!("; the nearest is `{near}`")))]
+    Unknown {
+        /// Kind or format.
+        what: &'static str,
+        /// Its name.
+        name: String,
+        /// The nearest name that there is, if one is near.
+        nearest: Option<String>,
+    },
     /// The selection is empty.
     #[error("no case has what was selected")]
     NoCase,
     /// A problem that cannot be set up.
     #[error("{0}")]
     Problem(#[from] Invalid),
+    /// A problem of the user is wrong.
+    #[error("`{id}`: {invalid}")]
+    OwnProblem {
+        /// Its id.
+        id: String,
+        /// What is wrong.
+        invalid: Invalid,
+    },
+    /// Two problems have the same id.
+    #[error("two problems have the id `{0}`; answers could not be told apart")]
+    SameId(String),
 }
 
 /// How a case went.
@@ -121,8 +144,8 @@ impl Outcome {
 pub struct CaseReport {
     /// Its id.
     pub id: String,
-    /// Its filter.
-    pub filter: FilterFile,
+    /// The filter of each mode.
+    pub filters: Vec<FilterFile>,
     /// Its dimensions.
     pub dimensions: Dimensions,
     /// How it went.
@@ -137,6 +160,8 @@ pub struct CaseReport {
     pub digits: Option<f64>,
     /// Why the program stopped before the end, if it did.
     pub stopped: Option<String>,
+    /// Of a problem that is not published, the steps whose values are certified; the expected values of the others are doubles.
+    pub certified: Option<usize>,
 }
 
 impl CaseReport {
@@ -144,7 +169,9 @@ impl CaseReport {
     pub fn new(problem: &ProblemFile) -> Self {
         Self {
             id: problem.id.clone(),
-            filter: problem.filter.clone(),
+            filters: (0..problem.modes.len())
+                .map(|mode| problem.filter_of(mode).clone())
+                .collect(),
             dimensions: problem.dimensions(),
             outcome: Outcome::NothingShown,
             judgement: None,
@@ -152,13 +179,13 @@ impl CaseReport {
             of: 0,
             digits: None,
             stopped: None,
+            certified: None,
         }
     }
 
-    /// The columns of a quantity of the case.
-    pub fn columns(&self, quantity: Quantity) -> usize {
-        let Dimensions { n, m, r, .. } = self.dimensions;
-        quantity.shape(n, m, r).1
+    /// The columns of a quantity in a step of the case.
+    pub fn columns(&self, step: usize, quantity: Quantity) -> usize {
+        self.dimensions.shape(step, quantity).1
     }
 }
 
@@ -220,8 +247,23 @@ impl Report {
     }
 }
 
+/// Every declared name is one that there is.
+fn check_known(what: &'static str, declared: Option<&Vec<String>>, known: Vec<&str>) -> Result<(), NotMade> {
+    let is_unknown = |name: &&String| !known.contains(&name.as_str());
+    match declared.into_iter().flatten().find(is_unknown) {
+        None => Ok(()),
+        Some(name) => Err(NotMade::Unknown {
+            what,
+            name: name.clone(),
+            nearest: nearest(name, known.into_iter()),
+        }),
+    }
+}
+
 /// The variants by which a program that declares conventions is judged.
 fn declared(ready: &Ready) -> Result<Vec<&'static str>, NotMade> {
+    check_known("kind of filter", ready.kinds.as_ref(), kinds().collect())?;
+    check_known("format", ready.formats.as_ref(), vec![FORMAT, FORMAT_2])?;
     let mut ids = Vec::new();
     for (key, value) in &ready.conventions {
         let is_ours = super::problem::Conventions::default().has(key, value);
@@ -277,42 +319,155 @@ fn declared(ready: &Ready) -> Result<Vec<&'static str>, NotMade> {
 ///
 /// [`NotMade`] when the check cannot be made.
 pub fn check(subject: &mut dyn Subject, selection: &Selection, progress: &dyn Fn(&str)) -> Result<Report, NotMade> {
-    let selected: Vec<&Case> = case::all()?.iter().filter(|case| selection.has(case)).collect();
-    if selected.is_empty() {
+    let selected = case::all()?.iter().filter(|case| selection.has(case));
+    let questions: Vec<Question> = selected.map(Question::Published).collect();
+    if questions.is_empty() {
         return Err(NotMade::NoCase);
     }
+    ask(subject, &questions, progress)
+}
+
+/// Checks a program over problems that are not published; each is certified first, as far as that goes.
+///
+/// Example: a problem of one's own, here a published one under another name, and this crate's own filter.
+///
+/// ```
+/// use immaculate::oracle::case;
+/// use immaculate::oracle::check::check_problems;
+/// use immaculate::oracle::subject::{Level, Planted};
+///
+/// let case = case::all().unwrap().iter().find(|case| case.problem.id == "step.n4-m2.two-modes").unwrap();
+/// let mut problem = case.problem.clone();
+/// problem.id = "mine".into();
+/// let mut program = Planted { variants: vec!["innovation-reversed".into()], level: Level::Everything };
+/// let report = check_problems(&mut program, &[problem], &|_| {}).unwrap();
+/// assert!(report.is_wrong());
+/// assert_eq!(report.cases[0].certified, Some(1)); // its one step
+/// ```
+///
+/// # Errors
+///
+/// [`NotMade`] when the check cannot be made; so it is for a problem that is wrong.
+pub fn check_problems(
+    subject: &mut dyn Subject,
+    problems: &[ProblemFile],
+    progress: &dyn Fn(&str),
+) -> Result<Report, NotMade> {
+    let mut questions = Vec::with_capacity(problems.len());
+    for (index, problem) in problems.iter().enumerate() {
+        if problems[..index].iter().any(|other| other.id == problem.id) {
+            return Err(NotMade::SameId(problem.id.clone()));
+        }
+        let (trace, steps) = certified_as_far_as_it_goes(problem).map_err(|invalid| NotMade::OwnProblem {
+            id: problem.id.clone(),
+            invalid,
+        })?;
+        questions.push(Question::Own {
+            problem,
+            expected: Expected::Trace(trace),
+            steps,
+        });
+    }
+    if questions.is_empty() {
+        return Err(NotMade::NoCase);
+    }
+    ask(subject, &questions, progress)
+}
+
+/// A problem that a program is asked, with what is expected.
+enum Question<'a> {
+    /// A published case.
+    Published(&'a Case),
+    /// A problem of the user, certified to so many steps.
+    Own {
+        problem: &'a ProblemFile,
+        expected: Expected,
+        steps: usize,
+    },
+}
+
+impl Question<'_> {
+    fn problem(&self) -> &ProblemFile {
+        match self {
+            Self::Published(case) => &case.problem,
+            Self::Own { problem, .. } => problem,
+        }
+    }
+
+    fn expected(&self) -> &Expected {
+        match self {
+            Self::Published(case) => &case.expected,
+            Self::Own { expected, .. } => expected,
+        }
+    }
+}
+
+/// Asks a program, and judges its answers.
+fn ask(subject: &mut dyn Subject, questions: &[Question], progress: &dyn Fn(&str)) -> Result<Report, NotMade> {
     let ready = subject.start()?;
     let conventions = declared(&ready)?;
-    let has = |case: &&&Case| {
+    // A problem of the user is asked in whatever format it has.
+    let is_read = |question: &Question| match question {
+        Question::Own { .. } => true,
+        Question::Published(case) => {
+            let formats = ready.formats.as_ref();
+            formats.is_none_or(|formats| formats.contains(&case.problem.format))
+        }
+    };
+    let has = |question: &&Question| {
         let kinds = ready.kinds.as_ref();
-        let has_filter = kinds.is_none_or(|kinds| kinds.iter().any(|kind| kind == case.problem.filter.name()));
-        match case.expected {
-            Expected::Trace(_) => has_filter,
+        let is_known = |kind: &str| kinds.is_none_or(|kinds| kinds.iter().any(|known| known == kind));
+        match question.expected() {
+            Expected::Trace(_) => is_read(question) && question.problem().kinds().into_iter().all(is_known),
             Expected::Rejection(_) => ready.validates,
         }
     };
-    let asked: Vec<&Case> = selected.iter().filter(has).copied().collect();
+    let asked: Vec<&Question> = questions.iter().filter(has).collect();
     let mut answered = Vec::new();
     let mut cases = Vec::new();
-    for case in &asked {
-        let answer = subject.run(&case.problem);
-        let (report, shown) = judge_answer(case, answer, &ready, &conventions)?;
+    for question in &asked {
+        let problem = question.problem();
+        let answer = subject.run(problem);
+        let (report, shown) = judge_answer(question, answer, &ready, &conventions)?;
         if let Some(shown) = shown {
-            answered.push((cases.len(), *case, shown));
+            answered.push((cases.len(), problem, shown));
         }
         cases.push(report);
-        progress(&case.problem.id);
+        progress(&problem.id);
     }
     let remarks = subject.stop();
-    let evidence: Vec<Evidence> = answered
+    let beginnings: Vec<Beginning> = answered
         .iter()
-        .map(|(index, case, (shown, reference))| evidence_of(&cases[*index], case, shown, reference, &ready))
+        .filter_map(|(index, problem, (shown, reference))| {
+            Beginning::of(*index, &cases[*index], problem, shown, reference)
+        })
         .collect();
+    let mut evidence: Vec<Evidence> = answered
+        .iter()
+        .map(|(index, problem, (shown, reference))| evidence_of(&cases[*index], problem, shown, reference, &ready))
+        .collect();
+    for beginning in &beginnings {
+        let (
+            case,
+            Beginning {
+                problem,
+                shown,
+                reference,
+                ..
+            },
+        ) = (&cases[beginning.case], beginning);
+        let mut of_beginning = evidence_of(case, problem, shown, reference, &ready);
+        of_beginning.is_beginning = true;
+        // What a mistake takes from the step after it is not there at the end.
+        of_beginning.passed.extend(shown.places(problem.measurements.len()));
+        evidence.push(of_beginning);
+    }
     let diagnosis = diagnose(&evidence, &conventions)?;
     let exists = |quantity: &Quantity| {
-        asked
-            .iter()
-            .any(|case| quantity.exists(|needed| case.problem.filter.has(needed)))
+        asked.iter().any(|question| {
+            let problem = question.problem();
+            (0..problem.modes.len()).any(|mode| quantity.exists(|needed| problem.has(needed, mode)))
+        })
     };
     let hidden = Quantity::ALL.into_iter().filter(exists).filter(|quantity| {
         !answered.iter().any(|(_, _, (shown, _))| {
@@ -323,7 +478,7 @@ pub fn check(subject: &mut dyn Subject, selection: &Selection, progress: &dyn Fn
     });
     Ok(Report {
         echo: ready.echo.as_ref().map(|echo| *echo == echoed()),
-        not_asked: selected.len() - asked.len(),
+        not_asked: questions.len() - asked.len(),
         hidden: hidden.collect(),
         ready,
         cases,
@@ -335,9 +490,18 @@ pub fn check(subject: &mut dyn Subject, selection: &Selection, progress: &dyn Fn
 /// What can be said of one answer, and what is shown with its reference if there is something to explain.
 type JudgedAnswer = (CaseReport, Option<(Trace, Reference)>);
 
-fn judge_answer(case: &Case, answer: Answer, ready: &Ready, conventions: &[&str]) -> Result<JudgedAnswer, Invalid> {
-    let mut report = CaseReport::new(&case.problem);
-    let expected = match &case.expected {
+fn judge_answer(
+    question: &Question,
+    answer: Answer,
+    ready: &Ready,
+    conventions: &[&str],
+) -> Result<JudgedAnswer, Invalid> {
+    let problem = question.problem();
+    let mut report = CaseReport::new(problem);
+    if let Question::Own { steps, .. } = question {
+        report.certified = Some(*steps);
+    }
+    let expected = match question.expected() {
         Expected::Trace(trace) => trace,
         Expected::Rejection(class) => {
             report.outcome = match answer {
@@ -353,16 +517,19 @@ fn judge_answer(case: &Case, answer: Answer, ready: &Ready, conventions: &[&str]
         }
     };
     report.of = expected.count();
-    let (shown, error) = match shown_by(answer, report.dimensions) {
+    let (shown, error) = match shown_by(answer, &report.dimensions) {
         Ok(shown) => shown,
         Err(outcome) => {
             report.outcome = outcome;
             return Ok((report, None));
         }
     };
-    let reference = reference_of(case, expected, conventions, ready.precision)?;
+    let reference = match question {
+        Question::Published(_) => reference_of(problem, expected, conventions, ready.precision)?,
+        Question::Own { .. } => Reference::new(problem, Some(expected), conventions, ready.precision)?,
+    };
     let judgement = judge::Case {
-        problem: &case.problem,
+        problem,
         shown: &shown,
         reference: &reference,
         precision: ready.precision,
@@ -375,7 +542,7 @@ fn judge_answer(case: &Case, answer: Answer, ready: &Ready, conventions: &[&str]
 }
 
 /// What an answer to a good problem shows, with the error if it stopped; or the outcome where there is nothing to be judged.
-fn shown_by(answer: Answer, dimensions: Dimensions) -> Result<(Trace, Option<String>), Outcome> {
+fn shown_by(answer: Answer, dimensions: &Dimensions) -> Result<(Trace, Option<String>), Outcome> {
     match answer {
         Answer::Steps { trace, error } => match trace.check(dimensions) {
             Ok(()) => Ok((trace, error)),
@@ -390,22 +557,22 @@ fn shown_by(answer: Answer, dimensions: Dimensions) -> Result<(Trace, Option<Str
 /// The references of cases that were asked for before, by id and unit roundoff.
 static REFERENCES: Mutex<BTreeMap<(String, u64), Reference>> = Mutex::new(BTreeMap::new());
 
-/// What a case is judged by. Without declared conventions it is always the same, and kept.
+/// What a published case is judged by. Without declared conventions it is always the same, and kept.
 fn reference_of(
-    case: &Case,
+    problem: &ProblemFile,
     expected: &Trace,
     conventions: &[&str],
     precision: Precision,
 ) -> Result<Reference, Invalid> {
     if !conventions.is_empty() {
-        return Reference::new(&case.problem, None, conventions, precision);
+        return Reference::new(problem, None, conventions, precision);
     }
-    let key = (case.problem.id.clone(), precision.unit_roundoff().to_bits());
+    let key = (problem.id.clone(), precision.unit_roundoff().to_bits());
     let kept = || REFERENCES.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(reference) = kept().get(&key) {
         return Ok(reference.clone());
     }
-    let reference = Reference::new(&case.problem, Some(expected), &[], precision)?;
+    let reference = Reference::new(problem, Some(expected), &[], precision)?;
     kept().insert(key, reference.clone());
     Ok(reference)
 }
@@ -419,7 +586,7 @@ fn stops_where_noise_drowns(shown: &Trace, reference: &Reference) -> bool {
         .map(|place| place.0)
         .max()
         .unwrap_or(0);
-    let steps = last.max(1)..=(last + 1).min(shown.dimensions.steps);
+    let steps = last.max(1)..=(last + 1).min(shown.dimensions.steps());
     let mut places = steps.flat_map(|step| shown.places(step));
     places.any(|place| reference.is_drowned(place))
 }
@@ -456,9 +623,47 @@ fn summarise(report: &mut CaseReport, judgement: &Judgement, error: Option<Strin
     };
 }
 
+/// The beginning of a long answer, to a little after its first fault.
+struct Beginning {
+    case: usize,
+    problem: ProblemFile,
+    shown: Trace,
+    reference: Reference,
+}
+
+impl Beginning {
+    /// The steps after the first fault: in two of them a mistake in almost any equation is made again, and the last is not judged.
+    const STEPS_AFTER: usize = 3;
+
+    /// None of an answer without a fault, or where it would be the greater part.
+    fn of(
+        index: usize,
+        report: &CaseReport,
+        problem: &ProblemFile,
+        shown: &Trace,
+        reference: &Reference,
+    ) -> Option<Self> {
+        let values = report.judgement.iter().flat_map(|judgement| &judgement.values);
+        let is_fault = |value: &&Judged| matches!(value.finding, Finding::Fault | Finding::NotFinite);
+        let first = values.filter(is_fault).map(|value| value.place.0).min()?;
+        let steps = first + Self::STEPS_AFTER;
+        if 2 * steps > problem.measurements.len() {
+            return None;
+        }
+        let mut problem = problem.clone();
+        problem.measurements.truncate(steps);
+        Some(Self {
+            case: index,
+            problem,
+            shown: shown.beginning(steps),
+            reference: reference.beginning(steps),
+        })
+    }
+}
+
 fn evidence_of<'a>(
     report: &CaseReport,
-    case: &'a Case,
+    problem: &'a ProblemFile,
     shown: &'a Trace,
     reference: &'a Reference,
     ready: &Ready,
@@ -473,12 +678,13 @@ fn evidence_of<'a>(
     let passed: BTreeSet<_> = values.filter(says_nothing).map(|value| value.place).collect();
     Evidence {
         case: judge::Case {
-            problem: &case.problem,
+            problem,
             shown,
             reference,
             precision: ready.precision,
         },
         passed,
         is_faulty: report.outcome == Outcome::Wrong,
+        is_beginning: false,
     }
 }

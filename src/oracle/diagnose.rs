@@ -27,7 +27,12 @@ pub struct Evidence<'a> {
     pub passed: BTreeSet<Place>,
     /// Whether the case has a fault.
     pub is_faulty: bool,
+    /// Whether it is the beginning of another piece of evidence: what does not explain the first fault is found out early.
+    pub is_beginning: bool,
 }
+
+/// Pairs are looked for where the shortest faulty run has at most so many steps: on two modes of five states that takes half a minute.
+const MOST_STEPS_FOR_PAIRS: usize = 12;
 
 /// What explains the faults.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,6 +55,8 @@ pub enum Diagnosis {
         unexplained: Vec<String>,
         /// The number of faulty cases.
         of: usize,
+        /// Whether all pairs were tried, too; for long runs they are too many.
+        pairs: bool,
     },
 }
 
@@ -95,22 +102,20 @@ pub fn diagnose(evidence: &[Evidence], conventions: &[&str]) -> Result<Diagnosis
 
 /// The evidence filter by filter, as long as there are several and one is without fault or explained.
 fn by_filter(evidence: &[Evidence], conventions: &[&str]) -> Result<Vec<(String, Diagnosis)>, Invalid> {
-    let mut names: Vec<&str> = evidence
-        .iter()
-        .map(|evidence| evidence.case.problem.filter.name())
-        .collect();
+    let name_of = |evidence: &Evidence| evidence.case.problem.kinds().join(" + ");
+    let mut names: Vec<String> = evidence.iter().map(name_of).collect();
     names.sort_unstable();
     names.dedup();
     let mut found = Vec::new();
     for name in names {
-        let of_filter = |evidence: &&Evidence| evidence.case.problem.filter.name() == name;
+        let of_filter = |evidence: &&Evidence| name_of(evidence) == name;
         let own: Vec<Evidence> = evidence.iter().filter(of_filter).cloned().collect();
         let search = Search::new(&own, conventions);
         let diagnosis = match search.quickly()? {
             Some(diagnosis) => diagnosis,
             None => search.best()?,
         };
-        found.push((name.to_owned(), diagnosis));
+        found.push((name, diagnosis));
     }
     Ok(found)
 }
@@ -219,8 +224,19 @@ impl<'a> Search<'a> {
         Ok((chosen.len() > 1).then_some(Diagnosis::Several(alternatives)))
     }
 
+    /// Whether the first evidence, which almost every pair fails at, is short enough for all pairs.
+    fn has_time_for_pairs(&self) -> bool {
+        let steps = |evidence: &&Evidence| evidence.case.shown.dimensions.steps();
+        self.evidence
+            .first()
+            .is_none_or(|first| steps(first) <= MOST_STEPS_FOR_PAIRS)
+    }
+
     /// All pairs.
     fn pairs(&self) -> Result<Option<Diagnosis>, Invalid> {
+        if !self.has_time_for_pairs() {
+            return Ok(None);
+        }
         let mut pairs = Vec::new();
         for (index, first) in self.candidates.iter().enumerate() {
             for second in &self.candidates[index + 1..] {
@@ -252,7 +268,8 @@ impl<'a> Search<'a> {
 
     /// The variants that explain most faulty cases, when nothing explains all.
     fn best(&self) -> Result<Diagnosis, Invalid> {
-        let faulty: Vec<&&Evidence> = self.evidence.iter().filter(|evidence| evidence.is_faulty).collect();
+        let is_whole = |evidence: &&&Evidence| evidence.is_faulty && !evidence.is_beginning;
+        let faulty: Vec<&&Evidence> = self.evidence.iter().filter(is_whole).collect();
         let unexplained: Result<Vec<Vec<String>>, Invalid> = self
             .candidates
             .par_iter()
@@ -275,6 +292,7 @@ impl<'a> Search<'a> {
             best: best.iter().map(|&index| self.candidates[index]).collect(),
             unexplained: best.first().map_or_else(Vec::new, |&index| unexplained[index].clone()),
             of: faulty.len(),
+            pairs: self.has_time_for_pairs(),
         })
     }
 }

@@ -22,18 +22,19 @@ pub fn list(cases: &[&Case]) -> String {
     never_broken(&mut table, 0);
     for case in cases {
         let problem = &case.problem;
-        let Dimensions { n, m, r, steps } = problem.dimensions();
+        let Dimensions { n, r, m } = problem.dimensions();
+        let (steps, m) = (m.len(), problem.noise.len());
         table.add_row(vec![
             problem.id.clone(),
             n.to_string(),
             m.to_string(),
             r.to_string(),
             steps.to_string(),
-            problem.filter.name().to_owned(),
+            problem.kinds().join(" + "),
             problem.flags.join(" "),
         ]);
     }
-    let filters: BTreeSet<&str> = cases.iter().map(|case| case.problem.filter.name()).collect();
+    let filters: BTreeSet<&str> = cases.iter().flat_map(|case| case.problem.kinds()).collect();
     let filters = filters.into_iter().collect::<Vec<&str>>().join(", ");
     let mut text = format!(
         "{table}\n{} cases. The filters:\n{}",

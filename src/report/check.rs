@@ -105,7 +105,7 @@ fn faults(report: &Report) -> String {
             text,
             "\n{heading}  {}  —  {}",
             quantity.name(),
-            case.filter.equation(quantity)
+            case.filters[judged.place.2].equation(quantity)
         );
         text.push_str(&wrapped(&first_fault(case, judged, report), "  "));
         if !judged.hidden.is_empty() {
@@ -132,7 +132,7 @@ fn faults(report: &Report) -> String {
 /// The place of a number inside its quantity.
 fn entry(judged: &Judged, index: usize, report: &CaseReport) -> String {
     let quantity = judged.place.1;
-    let columns = report.columns(quantity);
+    let columns = report.columns(judged.place.0, quantity);
     match quantity.rank() {
         0 => String::new(),
         1 => format!("[{index}]"),
@@ -259,15 +259,22 @@ fn diagnosis(diagnosis: &Diagnosis) -> String {
                 let _ = write!(text, "\nFILTER {name}: {sentence}");
             }
         }
-        Diagnosis::Unknown { best, unexplained, of } => text.push_str(&unknown(best, unexplained, *of)),
+        Diagnosis::Unknown {
+            best,
+            unexplained,
+            of,
+            pairs,
+        } => text.push_str(&unknown(best, unexplained, *of, *pairs)),
     }
     text
 }
 
 /// What is said where nothing in the catalogue explains all.
-fn unknown(best: &[&Variant], unexplained: &[String], of: usize) -> String {
-    let mut text = String::new();
-    text.push_str("\nCAUSE  Nothing in the catalogue, alone or with others, explains every value.\n");
+fn unknown(best: &[&Variant], unexplained: &[String], of: usize, pairs: bool) -> String {
+    let mut text = String::from("\nCAUSE  Nothing in the catalogue, alone or with others, explains every value.\n");
+    if !pairs {
+        text.push_str("  Of pairs in the same equation not all were tried: the run is long until its first fault.\n");
+    }
     if let Some(first) = best.first() {
         let _ = writeln!(
             text,
@@ -314,6 +321,12 @@ fn coverage(report: &Report) -> String {
             let _ = writeln!(text, "  {count} {sentence}.");
         }
     }
+    for case in &report.cases {
+        if let Some(certified) = case.certified {
+            let sentence = certified_steps(&case.id, certified, case.dimensions.steps());
+            text.push_str(&wrapped(&sentence, "  "));
+        }
+    }
     if !report.hidden.is_empty() && judged > 0 {
         let names: Vec<&str> = report.hidden.iter().map(|quantity| quantity.name()).collect();
         let sentence = format!(
@@ -325,7 +338,7 @@ fn coverage(report: &Report) -> String {
     }
     if report.not_asked > 0 {
         let sentence = format!(
-            "Cases not asked for: {}, of filters that the program does not have, or with input that it leaves to its caller to check.",
+            "Cases not asked for: {}, of filters or formats that the program does not have, or with input that it leaves to its caller to check.",
             report.not_asked
         );
         text.push_str(&wrapped(&sentence, "  "));
@@ -340,6 +353,17 @@ fn coverage(report: &Report) -> String {
         ),
     }
     text
+}
+
+/// What of a problem of the user is proven.
+fn certified_steps(id: &str, certified: usize, all: usize) -> String {
+    if certified == all {
+        return format!("{id}: every expected value is certified.");
+    }
+    format!(
+        "{id}: the expected values are certified to step {certified} of {all}; after it they are those of Immaculate's own run in doubles, with \
+         its rounding noise, and each equation is judged on the program's own values as before."
+    )
 }
 
 pub(super) fn counts(report: &Report) -> (usize, usize) {
@@ -402,6 +426,8 @@ fn unit(quantity: Quantity) -> &'static str {
         }
         Quantity::LogLikelihood => "",
         Quantity::Gain => " √(Pᵢᵢ/Sⱼⱼ)",
+        Quantity::MotionJacobian => " √(P⁻ᵢᵢ/P⁰ⱼⱼ)",
+        Quantity::MeasurementJacobian => " √(Sᵢᵢ/P⁻ⱼⱼ)",
         Quantity::CrossCovariance => " √(Pᵢᵢ Sⱼⱼ)",
         quantity if quantity.is_covariance() => " √(Pᵢᵢ Pⱼⱼ)",
         _ => " standard deviations",

@@ -21,7 +21,7 @@ pub fn json(report: &Report) -> Value {
             let values = case.judgement.iter().flat_map(|judgement| &judgement.values);
             let unusual: Vec<Value> = values
                 .filter(|value| value.finding != Finding::Right)
-                .map(|value| value_json(value, case.filter.equation(value.place.1), &names))
+                .map(|value| value_json(value, case.filters[value.place.2].equation(value.place.1), &names))
                 .collect();
             json!({
                 "id": case.id,
@@ -31,6 +31,7 @@ pub fn json(report: &Report) -> Value {
                 "judged": case.judged,
                 "of": case.of,
                 "digits": case.digits,
+                "certified_steps": case.certified,
                 "not_simply_right": unusual,
                 "failures": case.judgement.as_ref().map(|judgement| &judgement.failures),
             })
@@ -102,8 +103,14 @@ fn diagnosis_json(diagnosis: &Diagnosis) -> Value {
             let of_filter = |(name, found): &(String, Diagnosis)| (name.clone(), diagnosis_json(found));
             json!({ "by_filter": filters.iter().map(of_filter).collect::<serde_json::Map<_, _>>() })
         }
-        Diagnosis::Unknown { best, unexplained, of } => json!({
+        Diagnosis::Unknown {
+            best,
+            unexplained,
+            of,
+            pairs,
+        } => json!({
             "unknown": true,
+            "pairs_tried": pairs,
             "best": list(best),
             "unexplained_by_the_first": unexplained,
             "faulty_cases": of,

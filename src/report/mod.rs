@@ -22,6 +22,7 @@ pub mod divergence;
 pub mod equation;
 pub mod figure;
 pub mod fit_error;
+pub mod literal;
 pub mod long_term;
 pub mod page;
 pub mod palette;

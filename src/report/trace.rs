@@ -6,29 +6,30 @@
 use super::wrapped;
 use crate::imm::Quantity;
 use crate::oracle::problem::ProblemFile;
-use crate::oracle::trace::{Dimensions, Table};
+use crate::oracle::trace::Table;
 use std::fmt::Write;
 
 /// The trace of a problem, its numbers already written.
 pub fn text(problem: &ProblemFile, values: &Table<Vec<String>>) -> String {
-    let Dimensions { n, m, r, steps } = values.dimensions;
+    let dimensions = &values.dimensions;
     let mut text = format!("{}\n", problem.id);
     if !problem.about.is_empty() {
         text.push_str(&wrapped(&problem.about, "  "));
     }
     let _ = writeln!(text, "{}", state(problem));
-    for step in 1..=steps {
+    for step in 1..=dimensions.steps() {
         let detection = match problem.measurements.get(step - 1).and_then(|entry| entry.z.as_ref()) {
             Some(z) => format!("z = {z:?}"),
             None => "no detection".into(),
         };
         let _ = writeln!(text, "\nstep {step}: {detection}");
         for quantity in Quantity::ALL {
-            let modes = if quantity.is_of_mode() { r } else { 1 };
-            if values.get(step, quantity, 0).is_none() {
+            let modes = if quantity.is_of_mode() { dimensions.r } else { 1 };
+            let Some(first) = (0..modes).find(|&mode| values.get(step, quantity, mode).is_some()) else {
                 continue;
-            }
-            let _ = writeln!(text, "  {}  —  {}", quantity.name(), problem.filter.equation(quantity));
+            };
+            let equation = problem.filter_of(first).equation(quantity);
+            let _ = writeln!(text, "  {}  —  {equation}", quantity.name());
             for mode in 0..modes {
                 let Some(numbers) = values.get(step, quantity, mode) else {
                     continue;
@@ -39,7 +40,7 @@ pub fn text(problem: &ProblemFile, values: &Table<Vec<String>>) -> String {
                     ""
                 };
                 let columns = if quantity.rank() == 2 {
-                    quantity.shape(n, m, r).1
+                    dimensions.shape(step, quantity).1
                 } else {
                     numbers.len()
                 };

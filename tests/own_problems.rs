@@ -1,0 +1,340 @@
+//! Goal: a filter is judged on the problems of its author: any model, several sensors, steps that differ, any length.
+//!
+//! Method: this crate's own filter answers, right or with a mistake planted in it, and the verdict must name the equation; problems that
+//! cannot be read or run are refused with the place; and a long run is certified as far as it goes and judged to its end.
+
+mod common;
+
+use common::program::immaculate;
+use immaculate::imm::Quantity;
+use immaculate::oracle::case;
+use immaculate::oracle::certify::{certified_as_far_as_it_goes, certify};
+use immaculate::oracle::check::{Outcome, Report, check_problems};
+use immaculate::oracle::diagnose::Diagnosis;
+use immaculate::oracle::problem::ProblemFile;
+use immaculate::oracle::run::run_in_doubles;
+use immaculate::oracle::subject::{Level, Planted};
+use serde_json::{Value, json};
+use std::path::PathBuf;
+
+fn published(id: &str) -> ProblemFile {
+    let case = case::all().unwrap().iter().find(|case| case.problem.id == id);
+    case.expect("a case of this name").problem.clone()
+}
+
+/// The published automotive problem under a name of its own.
+fn car() -> ProblemFile {
+    let mut problem = published("automotive.extended.run");
+    problem.id = "car".into();
+    problem
+}
+
+fn verdict(problem: ProblemFile, variants: &[&str]) -> Report {
+    let mut program = Planted {
+        variants: variants.iter().map(|&id| id.to_owned()).collect(),
+        level: Level::Everything,
+    };
+    check_problems(&mut program, &[problem], &|_| {}).unwrap()
+}
+
+#[test]
+fn a_right_filter_is_right_on_a_problem_of_its_own() {
+    let report = verdict(car(), &[]);
+    assert!(!report.is_wrong());
+    assert_eq!(report.cases[0].outcome, Outcome::Right);
+    assert_eq!(report.cases[0].judged, report.cases[0].of);
+    assert_eq!(report.cases[0].certified, Some(40), "all of it");
+}
+
+/// A mistake, and the equation in which it is found.
+#[test]
+fn a_mistake_is_named_on_a_problem_of_its_own() {
+    for (id, quantity) in [
+        ("motion-jacobian-transposed", Quantity::MotionJacobian),
+        ("motion-jacobian-at-the-prediction", Quantity::MotionJacobian),
+        ("motion-jacobian-last-column-omitted", Quantity::MotionJacobian),
+        ("measurement-jacobian-at-the-mixed-mean", Quantity::MeasurementJacobian),
+        ("bearing-jacobian-negated", Quantity::MeasurementJacobian),
+        ("motion-by-jacobian", Quantity::PredictedMean),
+        ("measurement-by-jacobian", Quantity::PredictedMeasurement),
+        ("motion-of-the-first-step", Quantity::PredictedMean),
+        ("process-noise-of-the-first-step", Quantity::PredictedCovariance),
+        ("innovation-not-wrapped", Quantity::Innovation),
+        ("mixed-spread-omitted", Quantity::MixedCovariance),
+        ("transition-transposed", Quantity::PredictedModeProbabilities),
+        ("determinant-omitted", Quantity::LogLikelihood),
+        ("covariance-not-updated", Quantity::UpdatedCovariance),
+        ("combined-spread-omitted", Quantity::CombinedCovariance),
+    ] {
+        let mut problem = car();
+        problem.measurements.truncate(13); // both sensors, both directions across the cut, a missed detection
+        let report = verdict(problem, &[id]);
+        assert!(report.is_wrong(), "{id}");
+        let first = report.faults().map(|(_, judged)| judged.place.1).min();
+        assert_eq!(first, Some(quantity), "{id}");
+        let Diagnosis::One(variants) = &report.diagnosis else {
+            panic!("{id}: {:?}", report.diagnosis)
+        };
+        assert!(
+            variants.iter().any(|variant| variant.id == id),
+            "{id} is among {variants:?}"
+        );
+    }
+}
+
+/// An extended filter of one mode over so many steps, written without anything that speaks of modes.
+fn long(steps: usize) -> Value {
+    let measurements: Vec<Value> = (1..=steps)
+        .map(|step| {
+            let t = 0.2 * step as f64;
+            let (x, y) = (40.0 * (0.1 * t).sin() + 3.0, 25.0 - 40.0 * (0.1 * t).cos());
+            let rounded = |value: f64| (value * 1e4).round() / 1e4;
+            let ripple = 0.02 * ((step * 7919) % 101) as f64 - 1.0;
+            json!({ "step": step, "z": [rounded(x.hypot(y) + ripple), rounded(y.atan2(x) + 0.01 * ripple)] })
+        })
+        .collect();
+    json!({
+        "format": "immaculate-problem/2",
+        "id": "long",
+        "state": [["x", "m"], ["vx", "m/s"], ["y", "m"], ["vy", "m/s"], ["w", "rad/s"]],
+        "parameters": { "T": 0.2 },
+        "motion": { "model": "coordinated-turn-unknown-rate" },
+        "Q": { "model": "coordinated-turn-unknown-rate-piecewise-noise", "parameters": { "q": 0.5, "q_turn": 0.01 } },
+        "measurement": { "kind": "model", "model": "range-bearing" },
+        "R": [[0.5, 0], [0, 1e-4]],
+        "filter": { "kind": "extended" },
+        "initial": { "mean": [3, 4, -15, 0, 0.1], "covariance": [
+            [4, 0, 0, 0, 0], [0, 4, 0, 0, 0], [0, 0, 4, 0, 0], [0, 0, 0, 4, 0], [0, 0, 0, 0, 0.04]
+        ] },
+        "measurements": measurements
+    })
+}
+
+#[test]
+fn a_long_run_is_certified_as_far_as_it_goes_and_judged_to_its_end() {
+    let problem = ProblemFile::read(&long(500).to_string()).unwrap();
+    let (trace, certified) = certified_as_far_as_it_goes(&problem).unwrap();
+    assert!((8..500).contains(&certified), "{certified}");
+    // The beginning is what certification gives for itself, the rest the run in doubles.
+    let mut beginning = problem.clone();
+    beginning.measurements.truncate(8);
+    let proven = certify(&beginning).unwrap().trace;
+    let (doubles, _) = run_in_doubles(&problem).unwrap();
+    for quantity in Quantity::ALL {
+        assert_eq!(trace.get(8, quantity, 0), proven.get(8, quantity, 0));
+        assert_eq!(trace.get(500, quantity, 0), doubles.get(500, quantity, 0));
+    }
+    let report = verdict(problem.clone(), &[]);
+    assert_eq!((report.is_wrong(), report.cases[0].certified), (false, Some(certified)));
+    assert_eq!(report.cases[0].judged, report.cases[0].of);
+    let report = verdict(problem, &["motion-jacobian-at-the-prediction"]);
+    let place = report.faults().map(|(_, judged)| judged.place.1).min();
+    assert_eq!(place, Some(Quantity::MotionJacobian));
+    assert!(
+        matches!(&report.diagnosis, Diagnosis::One(variants) if variants[0].id == "motion-jacobian-at-the-prediction")
+    );
+}
+
+/// The short and the long form of a problem are the same problem; a program is sent the long one.
+#[test]
+fn a_problem_of_one_filter_is_written_without_modes() {
+    let short = long(3);
+    let mut full = short.clone();
+    let object = full.as_object_mut().unwrap();
+    let (motion, noise) = (object.remove("motion").unwrap(), object.remove("Q").unwrap());
+    object.insert(
+        "modes".into(),
+        json!([{ "name": "filter", "motion": motion, "Q": noise }]),
+    );
+    object.insert("transition".into(), json!([[1]]));
+    let estimate = object.remove("initial").unwrap();
+    object.insert(
+        "initial".into(),
+        json!({ "mode_probabilities": [1], "modes": [estimate] }),
+    );
+    let [short, full] = [short, full].map(|file| ProblemFile::read(&file.to_string()).unwrap());
+    assert_eq!(short, full);
+    assert!(json!(short)["modes"].is_array());
+}
+
+/// What is wrong with a short problem is said of its own keys.
+#[test]
+fn a_defect_of_a_short_problem_has_the_place_that_was_written() {
+    for (change, sentence) in [
+        (
+            json!({ "motion": { "model": "coordinated-turn-unknown-rat" } }),
+            "problem.motion.model: is \"coordinated-turn-unknown-rat\"",
+        ),
+        (json!({ "Q": [[1]] }), "problem.Q: has 1 entries where 5 are needed"),
+        (
+            json!({ "initial": { "mean": [1, 0, 0, 0, 0] } }),
+            "problem.initial.covariance: is missing",
+        ),
+        (
+            json!({ "initial": { "mean": [1], "covariance": [[1]] } }),
+            "problem.initial.mean: has 1 entries where 5 are needed",
+        ),
+        (
+            json!({ "filter": { "kind": "extendet" } }),
+            "problem.filter.kind: is \"extendet\"; known are kalman, extended",
+        ),
+        (json!({ "colour": 1 }), "problem.colour"),
+    ] {
+        let mut file = long(2);
+        for (key, value) in change.as_object().unwrap() {
+            file[key] = value.clone();
+        }
+        let error = ProblemFile::read(&file.to_string()).unwrap_err().to_string();
+        assert!(error.contains(sentence), "{error}");
+    }
+}
+
+#[test]
+fn what_is_wrong_with_sensors_is_said_with_the_place() {
+    for (pointer, value, sentence) in [
+        (
+            "/measurements/2/sensor",
+            json!("lidr"),
+            "problem.measurements[2].sensor: is \"lidr\", and there is no such sensor; the nearest name is `lidar`",
+        ),
+        (
+            "/sensors/0/R",
+            json!([[0.02]]),
+            "problem.sensors[0].measurement.H: has 2 entries where 1 are needed",
+        ),
+        (
+            "/sensors/0/measurement/kind",
+            json!("linea"),
+            "problem.sensors[0].measurement.kind: is \"linea\"; known are linear",
+        ),
+        (
+            "/measurements/2/z",
+            json!([1, 2, 3]),
+            "problem.measurements[2].z: has 3 entries where 2 are needed",
+        ),
+        (
+            "/measurements/2/T",
+            json!(-0.1),
+            "problem.measurements[2].T: is -0.1; no step is shorter than 0",
+        ),
+        (
+            "/measurements/0/z",
+            json!([20, 179, 3]),
+            "problem.measurements[0].z[1]: is 179, a bearing outside ±2π: is it in degrees?",
+        ),
+        (
+            "/modes/0/filter",
+            json!({ "kind": "fixed-gain", "mixing": "mixed", "modes": [] }),
+            "problem.modes[0].filter.kind: is fixed-gain, which is said of all modes at once",
+        ),
+        (
+            "/modes/0/filter",
+            json!({ "kind": "kalman" }),
+            "problem.measurement: is not linear, and the Kalman filter takes matrices",
+        ),
+    ] {
+        let mut file = json!(car());
+        match file.pointer_mut(pointer) {
+            Some(place) => *place = value,
+            None => file["modes"][0]["filter"] = value,
+        }
+        let error = ProblemFile::read(&file.to_string()).unwrap_err().to_string();
+        assert!(error.contains(sentence), "{pointer}: {error}");
+    }
+}
+
+/// The command line: files, folders, and what is refused.
+#[test]
+fn the_command_judges_files_and_folders() {
+    let folder = folder("own");
+    let write = |name: &str, file: &Value| std::fs::write(folder.join(name), file.to_string()).unwrap();
+    let mut other = long(5);
+    other["id"] = json!("other");
+    write("a.json", &long(4));
+    write("b.json", &other);
+    let program = env!("CARGO_BIN_EXE_immaculate");
+    let check = |problem: &str, more: &[&str]| {
+        let path = folder.join(problem);
+        let mut arguments = vec!["check", "--problem", path.to_str().unwrap(), "--", program, "answer"];
+        arguments.extend(more);
+        immaculate(&arguments).output().unwrap()
+    };
+    let whole = check("", &[]);
+    assert_eq!(whole.status.code(), Some(0), "{whole:?}");
+    let text = String::from_utf8(whole.stdout).unwrap();
+    assert!(text.contains(" long ") && text.contains(" other "), "{text}");
+    assert!(text.contains("long: every expected value is certified."), "{text}");
+    assert!(text.contains("RIGHT: "), "{text}");
+    let planted = check("a.json", &["--plant", "covariance-not-updated"]);
+    assert_eq!(planted.status.code(), Some(1));
+    let text = String::from_utf8(planted.stdout).unwrap();
+    assert!(
+        text.contains("FAULT  updated.covariance") && text.contains("(covariance-not-updated; mistake)"),
+        "{text}"
+    );
+
+    let complaint = |problem: &str| {
+        let refused = check(problem, &[]);
+        assert_eq!(
+            (refused.status.code(), refused.stdout.len()),
+            (Some(2), 0),
+            "{refused:?}"
+        );
+        String::from_utf8(refused.stderr).unwrap()
+    };
+    assert!(complaint("c.json").contains("c.json: No such file"));
+    write("b.json", &long(5));
+    assert!(complaint("").contains("two problems have the id `long`"));
+    std::fs::write(folder.join("b.json"), "{").unwrap();
+    assert!(complaint("").contains("b.json: problem: EOF"));
+    std::fs::create_dir(folder.join("empty")).unwrap();
+    assert!(complaint("empty").contains("empty: has no problem file, `*.json`"));
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
+/// Literals are read back as the certified doubles.
+#[test]
+fn literals_hold_the_certified_doubles() {
+    let file = folder("literals").join("problem.json");
+    let problem = ProblemFile::read(&long(2).to_string()).unwrap();
+    std::fs::write(&file, long(2).to_string()).unwrap();
+    let trace = certify(&problem).unwrap().trace;
+    let gain = trace.get(2, Quantity::Gain, 0).unwrap();
+    for (language, line, separators) in [
+        ("c", "static const double step_2_mode_0_gain[5][2] = ", "{},; "),
+        ("rust", "const STEP_2_MODE_0_GAIN: [[f64; 2]; 5] = ", "[],; "),
+        ("python", "expected[2, 0, \"gain\"] = ", "[], "),
+        ("matlab", "expected(2).modes(1).gain = ", "[]; "),
+    ] {
+        let output = immaculate(&["trace", file.to_str().unwrap(), "--as", language])
+            .output()
+            .unwrap();
+        let text = String::from_utf8(output.stdout).unwrap();
+        assert!(
+            text.lines()
+                .next()
+                .unwrap()
+                .ends_with("long: the doubles nearest to the exact values"),
+            "{text}"
+        );
+        let numbers = text
+            .lines()
+            .find_map(|own| own.strip_prefix(line))
+            .unwrap_or_else(|| panic!("{language}: {text}"));
+        let is_separator = |character: char| separators.contains(character);
+        let numbers: Vec<f64> = numbers
+            .split(is_separator)
+            .filter_map(|word| word.parse().ok())
+            .collect();
+        assert_eq!(&numbers, gain, "{language}");
+    }
+    std::fs::remove_dir_all(file.parent().unwrap()).unwrap();
+}
+
+/// An empty folder of this test's own.
+fn folder(name: &str) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("immaculate-own-{name}-{}", std::process::id()));
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
