@@ -84,7 +84,7 @@ impl Subject for Example {
                 })
                 .collect(),
         };
-        let mut trace = Trace::empty(problem.dimensions());
+        let mut trace = Trace::empty(&problem.dimensions());
         for entry in &problem.measurements {
             let step = imm.step(entry.z.as_deref());
             show(&mut trace, entry.step, &step, entry.z.is_some());

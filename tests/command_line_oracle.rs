@@ -101,12 +101,12 @@ fn a_trace_as_json_and_as_csv_is_that_of_the_library() {
         assert_eq!(value["id"], id);
         assert_eq!(value["error"], Value::Null);
         assert_eq!(
-            Trace::from_json(&value["steps"], expected.dimensions),
+            Trace::from_json(&value["steps"], &expected.dimensions),
             Ok(expected.clone()),
             "{id}"
         );
         let text = succeeds(&["trace", id, "--csv"]);
-        assert_eq!(csv::read(&text, id, expected.dimensions), Ok(expected), "{id}");
+        assert_eq!(csv::read(&text, id, &expected.dimensions), Ok(expected), "{id}");
     }
 }
 
@@ -322,7 +322,7 @@ fn copied_cases_are_the_published_files() {
         panic!("a trace");
     };
     let long = read("update.kalman.trace.csv");
-    assert_eq!(csv::read(&long, "update.kalman", trace.dimensions).as_ref(), Ok(trace));
+    assert_eq!(csv::read(&long, "update.kalman", &trace.dimensions).as_ref(), Ok(trace));
     let head = format!("{},scale,noise", csv::HEADER);
     assert_eq!(long.lines().next(), Some(head.as_str()));
     for line in long.lines().skip(1) {

@@ -20,6 +20,7 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 
 /// A plain Kalman problem of two modes, and one of three modes with range and bearing; and one of every other kind of filter.
 const LINEAR: &str = "step.n4-m2.two-modes";
@@ -560,7 +561,7 @@ fn wrong_values() -> Vec<Defect> {
             json!("particle"),
             Unknown,
             "problem.filter.kind",
-            "known are kalman, cubature, unscented, converted, fixed-gain",
+            "known are kalman, extended, cubature, unscented, converted, fixed-gain",
         ),
         (
             LINEAR,
@@ -971,7 +972,7 @@ fn reading_and_writing_a_trace_is_the_identity() {
         };
         let id = &case.problem.id;
         let steps = parsed(case.trace_text)["steps"].clone();
-        let again = Trace::from_json(&steps, trace.dimensions).unwrap();
+        let again = Trace::from_json(&steps, &trace.dimensions).unwrap();
         assert_eq!(&again, trace, "{id}");
         assert!(Value::Array(trace.steps_as_json()) == steps, "{id}: JSON");
         for text in [
@@ -979,7 +980,7 @@ fn reading_and_writing_a_trace_is_the_identity() {
             long_csv(&case.problem, trace, case.trace_text),
         ] {
             assert!(
-                csv::read(&text, id, trace.dimensions).as_ref() == Ok(trace),
+                csv::read(&text, id, &trace.dimensions).as_ref() == Ok(trace),
                 "{id}: CSV"
             );
         }
@@ -989,12 +990,7 @@ fn reading_and_writing_a_trace_is_the_identity() {
 }
 
 /// A trace of one mode, two states and one measurement, one step.
-const SMALL: Dimensions = Dimensions {
-    n: 2,
-    m: 1,
-    r: 1,
-    steps: 2,
-};
+static SMALL: LazyLock<Dimensions> = LazyLock::new(|| Dimensions::new(2, 1, 1, 2));
 
 /// The same step in the ways of different writers.
 #[test]
@@ -1002,7 +998,7 @@ fn answers_are_read_with_patience() {
     let plain = json!([{ "step": 1, "modes": [{ "mixing_probabilities": [1.0], "gain": [[0.5], [0.25]], "innovation_covariance": [[4.0]],
         "mixed": { "mean": [1.0, 2.0], "covariance": [[1.0, 0.5], [0.5, 2.0]] }, "log_likelihood": -1.5 }],
         "mode_probabilities": [1.0] }]);
-    let expected = Trace::from_json(&plain, SMALL).unwrap();
+    let expected = Trace::from_json(&plain, &SMALL).unwrap();
     assert_eq!(expected.count(), 7);
     let change = |pointer: &str, new: Value| {
         let mut changed = plain.clone();
@@ -1053,10 +1049,10 @@ fn answers_are_read_with_patience() {
             change("/0/modes/0/mixed/mean", json!([1, 2])),
         ),
     ] {
-        assert_eq!(Trace::from_json(&patient, SMALL), Ok(expected.clone()), "{what}");
+        assert_eq!(Trace::from_json(&patient, &SMALL), Ok(expected.clone()), "{what}");
     }
     let empty = change("/0/modes/0/gain", json!([]));
-    let count = Trace::from_json(&empty, SMALL).unwrap().count();
+    let count = Trace::from_json(&empty, &SMALL).unwrap().count();
     assert_eq!(count, 6, "an empty list is not shown");
 }
 
@@ -1077,7 +1073,7 @@ fn what_is_not_finite_is_read_as_such() {
         "\"-Inf\"",
     ] {
         let one = format!("{{\"steps\":[{{\"step\":1,\"modes\":[{{\"predicted\":{{\"mean\":[1.5, {word}]}}}}]}}]}}");
-        let trace = Trace::from_json(&read_json(&one).unwrap()["steps"], SMALL).unwrap();
+        let trace = Trace::from_json(&read_json(&one).unwrap()["steps"], &SMALL).unwrap();
         let mean = trace.get(1, quantity("predicted.mean"), 0).unwrap();
         assert!(
             (mean[0] - 1.5).abs() < f64::MIN_POSITIVE && mean[1].is_nan(),
@@ -1085,12 +1081,12 @@ fn what_is_not_finite_is_read_as_such() {
         );
         // The first alone does not stand for all.
         let first = one.replace(&format!("[1.5, {word}]"), &format!("[{word}, 1.5]"));
-        let trace = Trace::from_json(&read_json(&first).unwrap()["steps"], SMALL).unwrap();
+        let trace = Trace::from_json(&read_json(&first).unwrap()["steps"], &SMALL).unwrap();
         let mean = trace.get(1, quantity("predicted.mean"), 0).unwrap();
         assert!(mean[0].is_nan() && mean[1].is_finite(), "{word}: {mean:?}");
         // One for a whole matrix.
         let whole = format!("[{{\"step\":2,\"combined\":{{\"covariance\":{word}}}}}]");
-        let trace = Trace::from_json(&read_json(&whole).unwrap(), SMALL).unwrap();
+        let trace = Trace::from_json(&read_json(&whole).unwrap(), &SMALL).unwrap();
         let covariance = trace.get(2, quantity("combined.covariance"), 0).unwrap();
         assert!(
             covariance.len() == 4 && covariance.iter().all(|value| value.is_nan()),
@@ -1102,7 +1098,7 @@ fn what_is_not_finite_is_read_as_such() {
             word.trim_matches('"')
         );
         if word != "null" {
-            let trace = csv::read(&line, "x", SMALL).unwrap();
+            let trace = csv::read(&line, "x", &SMALL).unwrap();
             assert!(
                 trace.get(1, quantity("mode_probabilities"), 0).unwrap()[0].is_nan(),
                 "{line}"
@@ -1207,7 +1203,7 @@ fn a_wrong_answer_is_refused_with_its_place() {
         (json!([{ "modes": [] }]), "steps[0].step", "is missing"),
         (json!(["step"]), "steps[0]", "is not an object"),
     ] {
-        let invalid = Trace::from_json(&steps, SMALL).unwrap_err();
+        let invalid = Trace::from_json(&steps, &SMALL).unwrap_err();
         assert_eq!(invalid.place, place, "{invalid}");
         assert!(invalid.reason.contains(words), "{words} in {invalid}");
     }
@@ -1216,7 +1212,7 @@ fn a_wrong_answer_is_refused_with_its_place() {
 #[test]
 fn a_long_csv_is_read_with_patience() {
     let plain = format!("{}\nx,1,,combined.mean,1,,0.5\nx,1,,combined.mean,2,,-2\n", csv::HEADER);
-    let expected = csv::read(&plain, "x", SMALL).unwrap();
+    let expected = csv::read(&plain, "x", &SMALL).unwrap();
     for patient in [
         plain.replace('\n', "\r\n"),
         plain.replace(',', " , "),
@@ -1229,18 +1225,18 @@ fn a_long_csv_is_read_with_patience() {
         // A value of all modes has no mode, and a vector no column, whatever stands there.
         plain.replacen("x,1,,combined.mean,1,,0.5\n", "", 1) + "x,1,7,combined.mean,1,9,0.5\n",
     ] {
-        assert_eq!(csv::read(&patient, "x", SMALL), Ok(expected.clone()), "{patient:?}");
+        assert_eq!(csv::read(&patient, "x", &SMALL), Ok(expected.clone()), "{patient:?}");
     }
     let scalar = |row: &str| {
         let text = format!("{}\nx,1,1,log_likelihood,{row},,-1.5\n", csv::HEADER);
-        csv::read(&text, "x", SMALL)
+        csv::read(&text, "x", &SMALL)
     };
     assert_eq!(scalar("7"), scalar(""), "a scalar has no row");
     assert_eq!(scalar("").map(|trace| trace.count()), Ok(1));
     // An id is written so that it is read again, whatever it is.
     for id in ["a,b", "a\"b\"", "a\nb"] {
         let text = csv::write(id, &expected, "", |_, _| String::new());
-        assert_eq!(csv::read(&text, id, SMALL), Ok(expected.clone()), "{text}");
+        assert_eq!(csv::read(&text, id, &SMALL), Ok(expected.clone()), "{text}");
     }
 }
 
@@ -1325,7 +1321,7 @@ fn a_wrong_long_csv_is_refused_with_its_line() {
         ),
     ] {
         let text = format!("{}\nx,2,,mode_probabilities,1,,1\n{line}\n", csv::HEADER);
-        let invalid = csv::read(&text, "x", SMALL).unwrap_err();
+        let invalid = csv::read(&text, "x", &SMALL).unwrap_err();
         assert_eq!(invalid.place, place, "{line}: {invalid}");
         assert!(invalid.reason.contains(words), "{words} in {invalid}");
     }
@@ -1334,7 +1330,7 @@ fn a_wrong_long_csv_is_refused_with_its_line() {
         "id;step;mode;quantity;row;column;value\n",
         "step,id,mode,quantity,row,column,value\n",
     ] {
-        let invalid = csv::read(text, "x", SMALL).unwrap_err();
+        let invalid = csv::read(text, "x", &SMALL).unwrap_err();
         assert_eq!(invalid.place, "line 1", "{invalid}");
         assert!(invalid.reason.contains(csv::HEADER), "{invalid}");
     }
@@ -1817,6 +1813,15 @@ fn against_schema(value: &Value, schema: &Value, root: &Value, place: &str) -> R
             "additionalProperties" if *rule == json!(false) => {
                 object.keys().all(|key| schema["properties"].get(key).is_some())
             }
+            "additionalProperties" => {
+                for inner in object
+                    .iter()
+                    .filter(|(key, _)| schema["properties"].get(key.as_str()).is_none())
+                {
+                    against_schema(inner.1, rule, root, &format!("{place}.{}", inner.0))?;
+                }
+                true
+            }
             "oneOf" | "anyOf" => {
                 let fitting = list(rule)
                     .iter()
@@ -1826,6 +1831,12 @@ fn against_schema(value: &Value, schema: &Value, root: &Value, place: &str) -> R
                 } else {
                     fitting.count() > 0
                 }
+            }
+            "allOf" => {
+                for rule in list(rule) {
+                    against_schema(value, rule, root, place)?;
+                }
+                true
             }
             unknown => panic!("{place}: `{unknown}` is not known here"),
         };

@@ -405,23 +405,23 @@ fn assert_sentence(sentence: &str) {
 }
 
 /// Whether an answer, as JSON or CSV, is read; then it has the problem's dimensions.
-fn answer_law(text: &str, dimensions: Dimensions) -> bool {
+fn answer_law(text: &str, dimensions: &Dimensions) -> bool {
     let mut is_read = false;
     if let Ok(value) = read_json(text) {
-        let answer = read_answer(&value, dimensions);
+        let answer = read_answer(&value, &dimensions);
         is_read |= answer.is_ok();
         answer
             .err()
             .iter()
             .for_each(|broken| assert_sentence(&broken.to_string()));
-        if let Ok(trace) = Trace::from_json(value.get("steps").unwrap_or(&Value::Null), dimensions) {
-            assert_eq!(trace.check(dimensions), Ok(()));
+        if let Ok(trace) = Trace::from_json(value.get("steps").unwrap_or(&Value::Null), &dimensions) {
+            assert_eq!(trace.check(&dimensions), Ok(()));
         }
         let _ = Ready::read(&value);
     }
-    match csv::read(text, "x", dimensions) {
+    match csv::read(text, "x", &dimensions) {
         Ok(trace) => {
-            assert_eq!(trace.check(dimensions), Ok(()));
+            assert_eq!(trace.check(&dimensions), Ok(()));
             is_read = true;
         }
         Err(invalid) => assert_sentence(&invalid.to_string()),
@@ -524,7 +524,7 @@ fn answers() -> Vec<(Dimensions, Value, String)> {
             let long = csv::write("x", trace, "", |_, _| String::new());
             found
                 .entry(case.problem.filter.name().to_owned())
-                .or_insert((trace.dimensions, answer, long));
+                .or_insert((trace.dimensions.clone(), answer, long));
         }
     }
     found.into_values().collect()
@@ -536,7 +536,7 @@ fn a_mutated_answer_is_refused_or_read() {
     let mutations = (select(answers()), prop::collection::vec(any_mutation(), 1..4));
     proptest!(config(1500, 12), |(((dimensions, tree, _), mutations) in mutations)| {
         let text = mutated(&tree, &mutations);
-        fates.count(in_time(&text, || answer_law(&text, dimensions)));
+        fates.count(in_time(&text, || answer_law(&text, &dimensions)));
     });
     fates.assert_at_least(300, 100);
 }
@@ -634,7 +634,7 @@ fn damaged_bytes_are_refused_or_read() {
         .map(|case| case.problem_text.to_owned())
         .collect();
     let answers = answers();
-    let dimensions = answers[0].0;
+    let dimensions = &answers[0].0;
     let others = [
         answers[0].1.to_string(),
         answers[0].2.clone(),

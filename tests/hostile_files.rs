@@ -21,6 +21,7 @@ use serde_json::{Value, json};
 use std::cell::Cell;
 use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
+use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
 /// No reader takes longer for a file of a few kilobytes, and no run of a small problem either. Both take a thousandth of it; the rest is
@@ -317,7 +318,7 @@ fn every_accepted_problem_runs() {
             if let Some(sentence) = failure {
                 prop_assert!(sentence.starts_with("step "), "{}", sentence);
             }
-            prop_assert!(trace.check(trace.dimensions).is_ok());
+            prop_assert!(trace.check(&trace.dimensions).is_ok());
         }
         prop_assert!(start.elapsed() < PATIENCE, "{:?}: {}", start.elapsed(), text);
     });
@@ -528,9 +529,9 @@ fn a_long_problem_runs_in_time() {
     let (trace, failure) = run_in_doubles(&problem).unwrap();
     assert_eq!(failure, None);
     let steps = Value::Array(trace.steps_as_json());
-    assert_eq!(Trace::from_json(&steps, trace.dimensions).as_ref(), Ok(&trace));
+    assert_eq!(Trace::from_json(&steps, &trace.dimensions).as_ref(), Ok(&trace));
     let long = csv::write("x", &trace, "", |_, _| String::new());
-    assert_eq!(csv::read(&long, "x", trace.dimensions), Ok(trace));
+    assert_eq!(csv::read(&long, "x", &trace.dimensions), Ok(trace));
     assert!(start.elapsed() < PATIENCE_WITH_MONSTERS, "{:?}", start.elapsed());
 }
 
@@ -634,24 +635,24 @@ fn given(text: &str, patience: Duration) -> Fate {
     match &problem {
         Ok(problem) => {
             let (trace, _) = run_in_doubles(problem).unwrap();
-            assert!(trace.check(trace.dimensions).is_ok());
+            assert!(trace.check(&trace.dimensions).is_ok());
         }
         Err(invalid) => assert!(
             invalid.place.starts_with("problem") && !invalid.reason.is_empty(),
             "{invalid}"
         ),
     }
-    let long = csv::read(text, "x", DIMENSIONS);
+    let long = csv::read(text, "x", &DIMENSIONS);
     if let Err(invalid) = &long {
         assert!(!invalid.place.is_empty() && !invalid.reason.is_empty(), "{invalid}");
     }
     let mut is_answer = long.is_ok();
     if let Ok(value) = read_json(text) {
         is_answer |= matches!(
-            value.get("steps").map(|steps| Trace::from_json(steps, DIMENSIONS)),
+            value.get("steps").map(|steps| Trace::from_json(steps, &DIMENSIONS)),
             Some(Ok(_))
-        ) && read_answer(&value, DIMENSIONS).is_ok();
-        if let Err(invalid) = Trace::from_json(&value, DIMENSIONS) {
+        ) && read_answer(&value, &DIMENSIONS).is_ok();
+        if let Err(invalid) = Trace::from_json(&value, &DIMENSIONS) {
             assert!(invalid.place.starts_with("steps"), "{invalid}");
         }
         let _ = Ready::read(&value);
@@ -669,12 +670,7 @@ fn given(text: &str, patience: Duration) -> Fate {
 }
 
 /// Those of `step.n4-m2.two-modes`.
-const DIMENSIONS: Dimensions = Dimensions {
-    n: 4,
-    m: 2,
-    r: 2,
-    steps: 1,
-};
+static DIMENSIONS: LazyLock<Dimensions> = LazyLock::new(|| Dimensions::new(4, 2, 2, 1));
 
 fn of(id: &str) -> &'static case::Case {
     let all = case::all().unwrap();
@@ -687,7 +683,7 @@ fn text_of(id: &str) -> &'static str {
 
 /// A trace in which a quantity is not shown.
 fn without(trace: &Trace, hidden: Quantity) -> Trace {
-    let mut shown = Trace::empty(trace.dimensions);
+    let mut shown = Trace::empty(&trace.dimensions);
     for (step, quantity, mode) in trace.all_places().filter(|place| place.1 != hidden) {
         if let Some(value) = trace.get(step, quantity, mode) {
             shown.set(step, quantity, mode, value.clone());

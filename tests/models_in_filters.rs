@@ -679,7 +679,7 @@ fn bad_measurements() -> Vec<(Value, &'static str)> {
         ),
         (
             with(&turn, "/filter", json!({ "kind": "kalman" })),
-            "problem.modes[0].f: is not linear, and a filter without points has no other",
+            "problem.modes[0].f: is not linear, and the Kalman filter takes matrices",
         ),
         (
             with(&turn, "/measurements/1/T", json!(-1)),

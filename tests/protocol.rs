@@ -22,6 +22,7 @@ use immaculate::oracle::trace::{Dimensions, Trace};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
 /// Three cases of one step.
@@ -425,7 +426,7 @@ fn a_wrong_echo_is_wrong_though_every_value_is_right() {
 #[test]
 fn only_the_filters_that_a_program_has_are_asked_for() {
     let mut double = Double::new(right);
-    double.ready.kinds = Some(vec!["kalman".into(), "simplex-5".into(), "particle".into()]);
+    double.ready.kinds = Some(vec!["kalman".into(), "simplex-5".into(), "extended".into()]);
     let report = verdict_on(&mut double, &THREE).unwrap();
     assert_eq!(sorted(&double.asked), ["update.kalman", "update.simplex-5"]);
     assert_eq!((report.cases.len(), report.not_asked), (2, 1));
@@ -433,6 +434,43 @@ fn only_the_filters_that_a_program_has_are_asked_for() {
     double.ready.kinds = Some(Vec::new());
     let report = verdict_on(&mut double, &THREE).unwrap();
     assert!(double.asked.is_empty() && report.not_asked == 3);
+}
+
+/// A name that is misspelt would ask nothing, and nobody would know.
+#[test]
+fn a_kind_or_format_that_does_not_exist_is_refused() {
+    let refused = |kinds: &[&str], formats: &[&str]| {
+        let mut double = Double::new(right);
+        double.ready.kinds = Some(kinds.iter().map(|&name| name.into()).collect());
+        double.ready.formats = Some(formats.iter().map(|&name| name.into()).collect());
+        verdict_on(&mut double, &THREE).unwrap_err().to_string()
+    };
+    assert_eq!(
+        refused(&["kalmann"], &["immaculate-problem/1"]),
+        "the program declares the kind of filter \"kalmann\", and there is none of this name; the nearest is `kalman`"
+    );
+    assert_eq!(
+        refused(&["kalman", "particle"], &["immaculate-problem/1"]),
+        "the program declares the kind of filter \"particle\", and there is none of this name"
+    );
+    assert_eq!(
+        refused(&["kalman"], &["immaculate-problem/3"]),
+        "the program declares the format \"immaculate-problem/3\", and there is none of this name; the nearest is `immaculate-problem/1`"
+    );
+}
+
+/// Who says nothing of formats was written for the first one, and is not asked for what it cannot read.
+#[test]
+fn only_the_formats_that_a_program_reads_are_asked_for() {
+    let asked = |message: Value| {
+        let mut double = Double::new(right);
+        double.ready = Ready::read(&message).unwrap();
+        verdict_on(&mut double, &["update.kalman", "extended.one-mode"]).unwrap();
+        sorted(&double.asked).join(" ")
+    };
+    assert_eq!(asked(json!({ "type": "ready" })), "update.kalman");
+    let both = json!({ "formats": ["immaculate-problem/1", "immaculate-problem/2"] });
+    assert_eq!(asked(both), "extended.one-mode update.kalman");
 }
 
 #[test]
@@ -464,7 +502,7 @@ fn a_problem_that_must_be_rejected_must_be_rejected() {
     // Values of another shape than the problem's are values all the same.
     let (found, is_wrong) =
         outcome(
-            |_| match Trace::from_json(&json!([{ "step": 1, "combined": { "mean": [1] } }]), SMALL) {
+            |_| match Trace::from_json(&json!([{ "step": 1, "combined": { "mean": [1] } }]), &SMALL) {
                 Err(invalid) => Answer::Broken(Broken::Invalid(invalid)),
                 Ok(_) => unreachable!(),
             },
@@ -600,15 +638,15 @@ fn a_trace_of_other_dimensions_is_refused() {
         |problem| {
             let mut dimensions = problem.dimensions();
             dimensions.n += 1;
-            shows(Trace::empty(dimensions))
+            shows(Trace::empty(&dimensions))
         },
         |problem| {
-            let mut trace = Trace::empty(problem.dimensions());
+            let mut trace = Trace::empty(&problem.dimensions());
             trace.set(1, Quantity::CombinedMean, 0, vec![0.0; 3]);
             shows(trace)
         },
         |problem| {
-            let mut trace = Trace::empty(problem.dimensions());
+            let mut trace = Trace::empty(&problem.dimensions());
             trace.set(1, Quantity::LogLikelihood, 0, Vec::new());
             shows(trace)
         },
@@ -638,7 +676,7 @@ fn the_error_of_an_answer_may_be_said_in_many_ways() {
         (json!(false), None),
     ] {
         let message = json!({ "type": "answer", "id": "x", "steps": [], "error": error });
-        let Ok(Answer::Steps { error: found, .. }) = read_answer(&message, SMALL) else {
+        let Ok(Answer::Steps { error: found, .. }) = read_answer(&message, &SMALL) else {
             panic!("{message}");
         };
         assert_eq!(found.as_deref(), expected, "{message}");
@@ -648,12 +686,16 @@ fn the_error_of_an_answer_may_be_said_in_many_ways() {
 #[test]
 fn a_ready_message_is_read_with_patience_and_no_more() {
     let read = |message: Value| Ready::read(&message);
-    assert_eq!(read(json!({ "type": "ready" })), Ok(Ready::default()));
+    let default = Ready {
+        formats: Some(vec!["immaculate-problem/1".into()]),
+        ..Ready::default()
+    };
+    assert_eq!(read(json!({ "type": "ready" })), Ok(default.clone()));
     assert_eq!(
         read(
             json!({ "name": null, "kinds": null, "conventions": [], "echo": null, "validates": null, "precision": null })
         ),
-        Ok(Ready::default())
+        Ok(default)
     );
     let precision = |value: Value| read(json!({ "precision": value })).map(|ready| ready.precision);
     assert_eq!(precision(json!("single")), Ok(Precision::Single));
@@ -677,6 +719,7 @@ fn a_ready_message_is_read_with_patience_and_no_more() {
         ),
         (json!({ "kinds": "kalman" }), "`kinds` is not a list"),
         (json!({ "kinds": [1] }), "not a string"),
+        (json!({ "formats": 2 }), "`formats` is not a list"),
         (json!({ "echo": 321 }), "`echo` is not a list"),
         (json!({ "validates": "no" }), "`validates` is not true or false"),
     ] {
@@ -972,7 +1015,7 @@ impl Subject for Double {
         let Answer::Steps { trace, error } = (self.answer)(problem) else {
             return (self.answer)(problem);
         };
-        let mut shown = Trace::empty(trace.dimensions);
+        let mut shown = Trace::empty(&trace.dimensions);
         for (step, quantity, mode) in trace.all_places().filter(|place| place.0 <= self.steps) {
             if let Some(value) = trace.get(step, quantity, mode) {
                 shown.set(step, quantity, mode, value.clone());
@@ -985,12 +1028,7 @@ impl Subject for Double {
     }
 }
 
-const SMALL: Dimensions = Dimensions {
-    n: 2,
-    m: 1,
-    r: 1,
-    steps: 1,
-};
+static SMALL: LazyLock<Dimensions> = LazyLock::new(|| Dimensions::new(2, 1, 1, 1));
 
 fn shows(trace: Trace) -> Answer {
     Answer::Steps { trace, error: None }
@@ -1005,7 +1043,7 @@ fn right(problem: &ProblemFile) -> Answer {
 }
 
 fn nothing(problem: &ProblemFile) -> Answer {
-    shows(Trace::empty(problem.dimensions()))
+    shows(Trace::empty(&problem.dimensions()))
 }
 
 /// Right, with another convention that is not declared.

@@ -2,7 +2,7 @@
 //!
 //! After this file the reader can make a program under test out of anything that implements [`Subject`].
 
-use super::problem::ProblemFile;
+use super::problem::{FORMAT, FORMAT_2, ProblemFile};
 use super::subject::{Answer, Broken, Precision, Ready, Subject};
 use serde_json::{Value, json};
 
@@ -60,6 +60,7 @@ fn ready_message(ready: &Ready) -> Value {
         },
         "conventions": ready.conventions,
         "kinds": ready.kinds,
+        "formats": ready.formats.clone().unwrap_or_else(|| vec![FORMAT.to_owned(), FORMAT_2.to_owned()]),
         "echo": ready.echo,
         "validates": ready.validates,
     })

@@ -10,7 +10,7 @@
 
 use super::invalid::{Class, Invalid};
 use super::models::{ComponentFile, ModelFile, ModelParameters, NoiseFile, OthersFile};
-use super::problem::{MeasurementFile, ModeFile, ProblemFile};
+use super::problem::{MeasurementFile, ModeFile, ProblemFile, SensorAt};
 use crate::matrix::mirrored;
 use crate::model::binding::{InvalidModel, Others, STEP};
 use crate::model::formula::{Fault, InvalidFormula, InvalidName, check_names};
@@ -45,8 +45,8 @@ enum Source {
 pub(super) struct Functions {
     /// Of each mode the motion and the noise.
     pub(super) modes: Vec<[Option<Bound>; 2]>,
-    /// The measurement.
-    pub(super) sensor: Option<(Bound, Arc<Space>)>,
+    /// Of each sensor the measurement.
+    pub(super) sensors: Vec<Option<(Bound, Arc<Space>)>>,
 }
 
 /// The names that formulas may use.
@@ -65,9 +65,13 @@ impl ProblemFile {
     /// [`Invalid`] with the place inside the file.
     pub(super) fn functions(&self) -> Result<Functions, Invalid> {
         let is_plain = |mode: &ModeFile| mode.models == super::models::ModeModels::default();
-        if self.definitions.is_empty() && !self.measurement.is_function() && self.modes.iter().all(is_plain) {
-            let modes = self.modes.iter().map(|_| [None, None]).collect();
-            return Ok(Functions { modes, sensor: None });
+        let sensors = self.sensors_at();
+        let is_function = |sensor: &SensorAt| sensor.measurement.is_function();
+        if self.definitions.is_empty() && !sensors.iter().any(is_function) && self.modes.iter().all(is_plain) {
+            return Ok(Functions {
+                modes: self.modes.iter().map(|_| [None, None]).collect(),
+                sensors: sensors.iter().map(|_| None).collect(),
+            });
         }
         let state = self.space()?;
         let scope = self.scope(&state)?;
@@ -80,8 +84,9 @@ impl ProblemFile {
                 noise(mode, &place, &state, &scope)?,
             ]);
         }
-        let sensor = self.sensor_function(&state, &scope)?;
-        Ok(Functions { modes, sensor })
+        let of_sensor = |sensor| self.sensor_function(sensor, &state, &scope);
+        let sensors = sensors.iter().map(of_sensor).collect::<Result<_, Invalid>>()?;
+        Ok(Functions { modes, sensors })
     }
 
     /// What the state is.
@@ -115,13 +120,14 @@ impl ProblemFile {
     /// # Errors
     ///
     /// [`Invalid`] as for [`ProblemFile::functions`].
-    pub(super) fn measured_space(&self) -> Result<Space, Invalid> {
-        match &self.measurement {
-            MeasurementFile::Formulas { z, .. } => space("problem.measurement.z", z, &[]),
+    pub(super) fn measured_space(&self, sensor: &SensorAt) -> Result<Space, Invalid> {
+        let place = format!("{}.measurement", sensor.place);
+        match sensor.measurement {
+            MeasurementFile::Formulas { z, .. } => space(&format!("{place}.z"), z, &[]),
             MeasurementFile::Model { model, parameters } => {
-                measured(model, parameters, &self.space()?).map(|(space, _)| space)
+                measured(model, parameters, &self.space()?, &place).map(|(space, _)| space)
             }
-            _ => Err(Invalid::new(Class::Unknown, "problem.measurement", "is no function")),
+            _ => Err(Invalid::new(Class::Unknown, place, "is no function")),
         }
     }
 
@@ -136,21 +142,26 @@ impl ProblemFile {
         scope.with("problem", state, &self.parameters, &self.definitions)
     }
 
-    fn sensor_function(&self, state: &Space, scope: &Scope) -> Result<Option<(Bound, Arc<Space>)>, Invalid> {
-        let place = "problem.measurement";
-        match &self.measurement {
+    fn sensor_function(
+        &self,
+        sensor: &SensorAt,
+        state: &Space,
+        scope: &Scope,
+    ) -> Result<Option<(Bound, Arc<Space>)>, Invalid> {
+        let place = format!("{}.measurement", sensor.place);
+        match sensor.measurement {
             MeasurementFile::Formulas { z, h } => {
-                let space = space("problem.measurement.z", z, &[])?;
+                let space = space(&format!("{place}.z"), z, &[])?;
                 if h.len() != z.len() {
                     let reason = format!("has {} formulas where z has {} entries", h.len(), z.len());
-                    return Err(Invalid::new(Class::Shape, "problem.measurement.h", reason));
+                    return Err(Invalid::new(Class::Shape, format!("{place}.h"), reason));
                 }
                 let bound = scope.bound(&state.names(), h, |row| format!("{place}.h[{row}]"))?;
                 Ok(Some((bound, space.into())))
             }
             MeasurementFile::Model { model, parameters } => {
-                let (space, function) = measured(model, parameters, state)?;
-                Ok(Some((scope.given(function, place, model)?, space.into())))
+                let (space, function) = measured(model, parameters, state, &place)?;
+                Ok(Some((scope.given(function, &place, model)?, space.into())))
             }
             _ => Ok(None),
         }
@@ -233,8 +244,7 @@ fn noise(mode: &ModeFile, place: &str, state: &Space, scope: &Scope) -> Result<O
 }
 
 /// A measurement by the name of a model.
-fn measured(id: &str, parameters: &ModelParameters, state: &Space) -> Result<(Space, Function), Invalid> {
-    let place = "problem.measurement";
+fn measured(id: &str, parameters: &ModelParameters, state: &Space, place: &str) -> Result<(Space, Function), Invalid> {
     let found = named(id, ModelKind::Measurement, place)?.measurement(state, &numbers(parameters));
     found.map_err(|error| of_model(&error, place))
 }

@@ -250,7 +250,7 @@ fn read_expected(value: &Value, problem: &ProblemFile) -> Result<Expected, Inval
             .map(Expected::Rejection)
             .ok_or_else(|| Invalid::new(Class::Format, "rejected.class", "is not a class"));
     }
-    let trace = Trace::from_json(&value["steps"], problem.dimensions())?;
+    let trace = Trace::from_json(&value["steps"], &problem.dimensions())?;
     Ok(Expected::Trace(trace))
 }
 

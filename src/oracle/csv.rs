@@ -20,7 +20,6 @@ pub fn write(
     more: impl Fn((usize, Quantity, usize), usize) -> String,
 ) -> String {
     let mut text = format!("{HEADER}{header}\n");
-    let Dimensions { n, m, r, .. } = trace.dimensions;
     let id = quoted(id);
     for (step, quantity, mode) in trace.all_places() {
         let Some(values) = trace.get(step, quantity, mode) else {
@@ -31,7 +30,7 @@ pub fn write(
         } else {
             String::new()
         };
-        let columns = quantity.shape(n, m, r).1;
+        let columns = trace.dimensions.shape(step, quantity).1;
         for (index, value) in values.iter().enumerate() {
             let (row, column) = match quantity.rank() {
                 0 => (String::new(), String::new()),
@@ -64,9 +63,9 @@ type Seen = super::trace::Table<Vec<bool>>;
 /// # Errors
 ///
 /// [`Invalid`] with the line.
-pub fn read(text: &str, id: &str, dimensions: Dimensions) -> Result<Trace, Invalid> {
-    let mut trace = Trace::empty(dimensions);
+pub fn read(text: &str, id: &str, dimensions: &Dimensions) -> Result<Trace, Invalid> {
     let mut seen = Seen::empty(dimensions);
+    let mut trace = Trace::empty(dimensions);
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
         .flexible(true)
@@ -97,11 +96,9 @@ fn bad(place: &str, reason: impl Into<String>) -> Invalid {
 }
 
 fn read_line(trace: &mut Trace, seen: &mut Seen, fields: &[&str], place: &str) -> Result<(), Invalid> {
-    let Dimensions { n, m, r, steps } = trace.dimensions;
     let Some(quantity) = Quantity::ALL.into_iter().find(|quantity| quantity.name() == fields[3]) else {
         return Err(bad(place, format!("has {:?}, which is not a quantity", fields[3])));
     };
-    let (rows, columns) = quantity.shape(n, m, r);
     let count = |column: usize, most: usize, is_there: bool| -> Result<usize, Invalid> {
         if !is_there || (fields[column].is_empty() && most == 1) {
             return Ok(0);
@@ -124,8 +121,9 @@ fn read_line(trace: &mut Trace, seen: &mut Seen, fields: &[&str], place: &str) -
             )
         })
     };
-    let step = count(1, steps, true)? + 1;
-    let mode = count(2, r, quantity.is_of_mode())?;
+    let step = count(1, trace.dimensions.steps(), true)? + 1;
+    let (rows, columns) = trace.dimensions.shape(step, quantity);
+    let mode = count(2, trace.dimensions.r, quantity.is_of_mode())?;
     let row = count(4, rows, quantity.rank() > 0)?;
     let column = count(5, columns, quantity.rank() > 1)?;
     let value = match fields[6] {
@@ -154,9 +152,8 @@ fn read_line(trace: &mut Trace, seen: &mut Seen, fields: &[&str], place: &str) -
 
 /// A quantity is shown whole or not at all, and each of its numbers once.
 fn check_complete(trace: &Trace, seen: &Seen) -> Result<(), Invalid> {
-    let Dimensions { n, m, r, .. } = trace.dimensions;
     for (step, quantity, mode) in trace.all_places() {
-        let (rows, columns) = quantity.shape(n, m, r);
+        let (rows, columns) = trace.dimensions.shape(step, quantity);
         let Some(places) = seen.get(step, quantity, mode) else {
             continue;
         };

@@ -67,11 +67,11 @@ impl Folder {
                     asked: problem.id.clone(),
                     answered: shortened(id, 100),
                 }),
-                _ => read_answer(&message, dimensions),
+                _ => read_answer(&message, &dimensions),
             };
         }
         if let Some(text) = read_file(&self.path.join(format!("{}.csv", problem.id)))? {
-            let trace = csv::read(&text, &problem.id, dimensions).map_err(Broken::Invalid)?;
+            let trace = csv::read(&text, &problem.id, &dimensions).map_err(Broken::Invalid)?;
             return Ok(Answer::Steps { trace, error: None });
         }
         Ok(Answer::Skipped {

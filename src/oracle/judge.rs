@@ -87,6 +87,38 @@ pub struct Reference {
     pub scale: Trace,
     /// The rounding noise in the precision of the program under test.
     pub noise: Trace,
+    turns: Turns,
+}
+
+/// Which numbers of a trace are angles, which count modulo 2π.
+#[derive(Debug, Clone, PartialEq)]
+struct Turns {
+    /// Of the measurement of each sensor.
+    measured: Vec<Vec<bool>>,
+    /// The sensor of each step.
+    sensors: Vec<usize>,
+}
+
+impl Turns {
+    fn of(problem: &ProblemFile) -> Self {
+        let sensors = problem.sensors_at();
+        Self {
+            measured: sensors.iter().map(|sensor| problem.angles_of(sensor)).collect(),
+            sensors: problem
+                .measurements
+                .iter()
+                .map(|entry| problem.sensor_of(entry).unwrap_or(0))
+                .collect(),
+        }
+    }
+
+    /// Whether a number of a value is one. An innovation is wrapped and is none.
+    fn has(&self, (step, quantity, _): Place, index: usize) -> bool {
+        match quantity {
+            Quantity::PredictedMeasurement => self.measured[self.sensors[step - 1]].get(index) == Some(&true),
+            _ => false,
+        }
+    }
 }
 
 /// A judged case.
@@ -170,17 +202,28 @@ impl Reference {
         let mut expected = expect(problem, conventions, None, precision, noise::RUNS)?;
         let trace = match certified {
             Some(certified) if conventions.is_empty() => certified.clone(),
-            _ => std::mem::replace(&mut expected.values, Trace::empty(expected.noise.dimensions)),
+            _ => std::mem::replace(&mut expected.values, Trace::empty(&expected.noise.dimensions)),
         };
         Ok(Self {
             scale: scales(problem, &trace),
             trace,
             noise: expected.noise,
+            turns: Turns::of(problem),
         })
     }
 }
 
 impl Reference {
+    /// That of the first steps alone.
+    pub fn beginning(&self, steps: usize) -> Self {
+        Self {
+            trace: self.trace.beginning(steps),
+            scale: self.scale.beginning(steps),
+            noise: self.noise.beginning(steps),
+            turns: self.turns.clone(),
+        }
+    }
+
     /// Whether the noise of a value is as large as its unit.
     pub fn is_drowned(&self, place: Place) -> bool {
         is_drowned(place, &self.noise, &self.scale)
@@ -201,13 +244,12 @@ fn is_drowned((step, quantity, mode): Place, noise: &Trace, scale: &Trace) -> bo
 /// A quantity has one noise, in units of scale: the greatest of its numbers', and at least a unit roundoff. A number that happens to be
 /// spared, because it is zero by structure or its errors cancel, is not spared in other algebra.
 fn compare(
-    place: Place,
     shown: &[f64],
     expected: &[f64],
     noise: &[f64],
     scale: &[f64],
     precision: Precision,
-    turn: &dyn Fn(Place, usize) -> bool,
+    turn: &dyn Fn(usize) -> bool,
 ) -> OwnError {
     let mut worst = OwnError {
         index: 0,
@@ -223,7 +265,7 @@ fn compare(
         .fold(precision.unit_roundoff(), f64::max);
     for index in 0..shown.len() {
         let mut error = (shown[index] - expected[index]).abs();
-        if turn(place, index) {
+        if turn(index) {
             let turns = (error / (2.0 * std::f64::consts::PI)).round();
             error = (error - turns * 2.0 * std::f64::consts::PI).abs();
         }
@@ -269,8 +311,8 @@ impl Case<'_> {
         let expected = expected.get(step, quantity, mode)?;
         let noise = noise.get(step, quantity, mode)?;
         let scale = self.reference.scale.get(step, quantity, mode)?;
-        let turn = |place: Place, row: usize| place.1 == Quantity::PredictedMeasurement && self.problem.is_bearing(row);
-        Some(compare(place, shown, expected, noise, scale, self.precision, &turn))
+        let turn = |index| self.reference.turns.has(place, index);
+        Some(compare(shown, expected, noise, scale, self.precision, &turn))
     }
 
     /// Judges all shown values.
@@ -396,14 +438,14 @@ fn inputs(problem: &ProblemFile, shown: &Trace, place: Place) -> (BTreeSet<Place
             .get(step - 1)
             .is_some_and(|entry| entry.z.is_some())
     };
-    let needed_is_there = |step: usize, needed: Needs| match needed {
+    let needed_is_there = |step: usize, mode: usize, needed: Needs| match needed {
         Needs::Detection => has_detection(step),
-        _ => problem.filter.has(needed),
+        _ => problem.has(needed, mode),
     };
     let (mut hidden, mut last_shown) = (BTreeSet::new(), BTreeSet::new());
     let mut open = vec![place];
     while let Some((step, quantity, mode)) = open.pop() {
-        for input in quantity.inputs(|needed| needed_is_there(step, needed)) {
+        for input in quantity.inputs(|needed| needed_is_there(step, mode, needed)) {
             let (step, input, is_before) = match input {
                 Input::Now(input) => (step, input, false),
                 Input::Before(input) if step > 1 => (step - 1, input, true),

@@ -72,6 +72,7 @@ pub mod run;
 pub mod scale;
 pub mod schema;
 pub mod setup;
+mod single;
 mod steps;
 pub mod subject;
 pub mod trace;

@@ -2,7 +2,7 @@
 //!
 //! After this file the reader knows the keys. What becomes of them is in `bound`, and what is refused in `well_formed`.
 
-use super::problem::{ModeFile, Rows, if_there_at_all};
+use super::problem::{FilterFile, ModeFile, Rows, if_there_at_all};
 use crate::model::space::{Component, ComponentKind};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
@@ -320,6 +320,8 @@ pub struct ModeModels {
     pub definitions: Vec<[String; 2]>,
     /// Names with numbers, known in this mode.
     pub parameters: ModelParameters,
+    /// The filter of this mode, if it is another than the problem's.
+    pub filter: Option<FilterFile>,
 }
 
 /// A mode as it stands in the file.
@@ -364,6 +366,14 @@ pub(super) struct ModeKeys {
     /// Names with numbers.
     #[serde(default, skip_serializing_if = "ModelParameters::is_empty")]
     parameters: ModelParameters,
+    /// The filter of this mode, if it is another than the problem's.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "if_there_at_all"
+    )]
+    #[schemars(with = "FilterFile")]
+    filter: Option<FilterFile>,
 }
 
 impl TryFrom<ModeKeys> for ModeFile {
@@ -394,6 +404,7 @@ impl TryFrom<ModeKeys> for ModeFile {
                 noise: other_noise,
                 definitions: keys.definitions,
                 parameters: keys.parameters,
+                filter: keys.filter,
             },
         })
     }
@@ -410,6 +421,7 @@ impl From<ModeFile> for ModeKeys {
             noise: mode.models.noise.unwrap_or(NoiseFile::Matrix(mode.noise)),
             definitions: mode.models.definitions,
             parameters: mode.models.parameters,
+            filter: mode.models.filter,
         }
     }
 }

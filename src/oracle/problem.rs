@@ -5,6 +5,7 @@
 
 use super::invalid::{Class, Invalid};
 use super::models::{ComponentFile, ModeKeys, ModeModels, ModelParameters};
+use super::single;
 use super::trace::Dimensions;
 use super::unreadable;
 use crate::imm::{Needs, Quantity};
@@ -35,6 +36,21 @@ pub const MIXINGS: [&str; 2] = ["mixed", UNMIXED];
 
 /// The reading in which each mode starts from its own estimate.
 pub const UNMIXED: &str = "unmixed";
+
+/// The kinds of filter whose name is not that of a rule.
+const OTHER_KINDS: [&str; 6] = [
+    "kalman",
+    "extended",
+    "unscented",
+    "converted",
+    "fixed-gain",
+    "fixed-gain-unmixed",
+];
+
+/// The names of all kinds of filter, [`FilterFile::name`].
+pub fn kinds() -> impl Iterator<Item = &'static str> {
+    OTHER_KINDS.into_iter().chain(RULES)
+}
 
 /// A matrix as a list of rows.
 pub type Rows = Vec<Vec<f64>>;
@@ -72,7 +88,10 @@ pub struct ProblemFile {
     /// Covariance of the measurement's noise, m × m.
     #[serde(rename = "R")]
     pub noise: Rows,
-    /// The filter.
+    /// Further sensors; a step that names none is seen by `measurement`. Format 2.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sensors: Vec<SensorFile>,
+    /// The filter of every mode that has none of its own.
     pub filter: FilterFile,
     /// `transition[i][j]` = P(mode j at k ∣ mode i at k−1).
     pub transition: Rows,
@@ -135,12 +154,38 @@ pub enum MeasurementFile {
     },
 }
 
+/// A further sensor.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SensorFile {
+    /// Its name.
+    pub name: String,
+    /// What it sees.
+    pub measurement: MeasurementFile,
+    /// Covariance of its noise; it may have another dimension than the others.
+    #[serde(rename = "R")]
+    pub noise: Rows,
+}
+
+/// A sensor of a problem, with its place in the file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SensorAt<'a> {
+    /// What it sees.
+    pub measurement: &'a MeasurementFile,
+    /// R.
+    pub noise: &'a Rows,
+    /// Where both stand: `problem` or `problem.sensors[0]`.
+    pub place: String,
+}
+
 /// The filter.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum FilterFile {
     /// Linear motion and measurement.
     Kalman {},
+    /// Motion and measurement at their slopes. Format 2.
+    Extended {},
     /// Moments by the points of a rule.
     Cubature {
         /// `cubature-3`, `cubature-5`, `simplex-5`, `gauss-hermite-2` to `gauss-hermite-5`.
@@ -184,14 +229,23 @@ impl MeasurementFile {
     pub(super) fn is_function(&self) -> bool {
         matches!(self, Self::Formulas { .. } | Self::Model { .. })
     }
+
+    /// Whether an entry is a distance.
+    pub(super) fn is_range(&self, row: usize) -> bool {
+        match self {
+            Self::RangeBearing { components, .. } => components.get(row).is_some_and(|component| component == "range"),
+            _ => false,
+        }
+    }
 }
 
 impl FilterFile {
-    /// The kind's short name: `kalman`, `unscented`, the rule's, `converted`, `fixed-gain` or, where no estimates are mixed,
+    /// The kind's short name: `kalman`, `extended`, `unscented`, the rule's, `converted`, `fixed-gain` or, where no estimates are mixed,
     /// `fixed-gain-unmixed`.
     pub fn name(&self) -> &str {
         match self {
             Self::Kalman {} => "kalman",
+            Self::Extended {} => "extended",
             Self::Cubature { rule } => rule,
             Self::Unscented { .. } => "unscented",
             Self::Converted { .. } => "converted",
@@ -209,6 +263,14 @@ impl FilterFile {
             (Self::Converted { .. }, Quantity::Innovation | Quantity::PredictedMeasurement) => "sustika2015 (18)",
             (Self::Converted { .. }, Quantity::InnovationCovariance) => "sustika2015 (16)",
             (Self::Converted { .. }, Quantity::CrossCovariance | Quantity::Gain) => "sustika2015 (17)",
+            (
+                Self::Extended {},
+                Quantity::PredictedMean
+                | Quantity::PredictedCovariance
+                | Quantity::PredictedMeasurement
+                | Quantity::InnovationCovariance
+                | Quantity::CrossCovariance,
+            ) => "Bar-Shalom, Li and Kirubarajan 2001, section 10.3",
             _ => quantity.equation(),
         }
     }
@@ -218,6 +280,7 @@ impl FilterFile {
         match needed {
             Needs::Covariances => !matches!(self, Self::FixedGain { .. }),
             Needs::Conversion => matches!(self, Self::Converted { .. }),
+            Needs::LinearisedMotion | Needs::LinearisedMeasurement => matches!(self, Self::Extended {}),
             Needs::Detection => true,
         }
     }
@@ -315,6 +378,14 @@ pub struct MeasurementAt {
     #[serde(deserialize_with = "Option::deserialize")]
     #[schemars(required)]
     pub z: Option<Vec<f64>>,
+    /// The name of the sensor that sees in this step. Format 2.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "if_there_at_all"
+    )]
+    #[schemars(with = "String")]
+    pub sensor: Option<String>,
     /// The length of the step, T in formulas. Format 2.
     #[serde(
         default,
@@ -379,6 +450,7 @@ impl MeasurementAt {
     /// The first key that changes something.
     pub(super) fn first_change(&self) -> Option<&'static str> {
         let keys = [
+            ("sensor", self.sensor.is_some()),
             ("T", self.interval.is_some()),
             ("F", self.transitions.is_some()),
             ("Q", self.noises.is_some()),
@@ -410,9 +482,15 @@ impl ProblemFile {
     ///
     /// [`Invalid`] with the place inside the file.
     pub fn read(text: &str) -> Result<Self, Invalid> {
-        let problem = Self::parse(text)?;
-        problem.check()?;
-        Ok(problem)
+        let read = || {
+            let problem = Self::parse(text)?;
+            problem.check()?;
+            Ok(problem)
+        };
+        match single::long_form(text) {
+            None => read(),
+            Some(_) => read().map_err(single::of_short_form),
+        }
     }
 
     /// Reads a problem whose contents may be wrong; only the JSON and the keys must be right.
@@ -421,6 +499,11 @@ impl ProblemFile {
     ///
     /// [`Invalid`] with the place inside the file.
     pub fn parse(text: &str) -> Result<Self, Invalid> {
+        if let Some(file) = single::long_form(text) {
+            let long = file.to_string();
+            return serde_path_to_error::deserialize(file)
+                .map_err(|error| unreadable::reason(&long, &error.path().to_string(), &error.inner().to_string()));
+        }
         let mut deserializer = serde_json::Deserializer::from_str(text);
         let problem: Self = serde_path_to_error::deserialize(&mut deserializer)
             .map_err(|error| unreadable::reason(text, &error.path().to_string(), &error.inner().to_string()))?;
@@ -433,38 +516,84 @@ impl ProblemFile {
         Ok(problem)
     }
 
+    /// The filter of a mode.
+    pub fn filter_of(&self, mode: usize) -> &FilterFile {
+        let own = self.modes.get(mode).and_then(|mode| mode.models.filter.as_ref());
+        own.unwrap_or(&self.filter)
+    }
+
+    /// The filters of the modes by [`FilterFile::name`], each once.
+    pub fn kinds(&self) -> Vec<&str> {
+        let mut kinds = Vec::new();
+        for mode in 0..self.modes.len() {
+            let name = self.filter_of(mode).name();
+            if !kinds.contains(&name) {
+                kinds.push(name);
+            }
+        }
+        kinds
+    }
+
+    /// Whether what a value needs is there in a mode, apart from a detection.
+    pub fn has(&self, needed: Needs, mode: usize) -> bool {
+        match needed {
+            // A converted measurement belongs to all modes together.
+            Needs::Conversion => (0..self.modes.len()).any(|mode| self.filter_of(mode).has(needed)),
+            _ => self.filter_of(mode).has(needed),
+        }
+    }
+
     /// Entries of the state, of the measurement, modes, and steps.
     pub fn dimensions(&self) -> Dimensions {
+        let sensors = self.sensors_at();
+        let of_step = |entry: &MeasurementAt| sensors[self.sensor_of(entry).unwrap_or(0)].noise.len();
         Dimensions {
             n: self.state.len(),
-            m: self.noise.len(),
             r: self.modes.len(),
-            steps: self.measurements.len(),
+            m: self.measurements.iter().map(of_step).collect(),
         }
     }
 
-    /// Whether an entry of the measurement is an angle.
-    pub fn is_bearing(&self, row: usize) -> bool {
-        match &self.measurement {
-            MeasurementFile::Formulas { z, .. } => z
-                .get(row)
-                .is_some_and(|component| component.kind == ComponentKind::Angle),
-            MeasurementFile::Model { .. } => self.measured_space().is_ok_and(|space| space.is_angle(row)),
-            _ => self.is_component(row, "bearing"),
+    /// All sensors: that of `measurement` first.
+    pub fn sensors_at(&self) -> Vec<SensorAt<'_>> {
+        let of_problem = SensorAt {
+            measurement: &self.measurement,
+            noise: &self.noise,
+            place: "problem".to_owned(),
+        };
+        let mut sensors = vec![of_problem];
+        for (index, sensor) in self.sensors.iter().enumerate() {
+            sensors.push(SensorAt {
+                measurement: &sensor.measurement,
+                noise: &sensor.noise,
+                place: format!("problem.sensors[{index}]"),
+            });
         }
+        sensors
     }
 
-    /// Whether an entry of the measurement is a distance.
-    pub fn is_range(&self, row: usize) -> bool {
-        self.is_component(row, "range")
+    /// Which of the sensors sees in a step; `None` if none has the name.
+    pub fn sensor_of(&self, entry: &MeasurementAt) -> Option<usize> {
+        let Some(name) = &entry.sensor else { return Some(0) };
+        let index = self.sensors.iter().position(|sensor| sensor.name == *name)?;
+        Some(index + 1)
     }
 
-    fn is_component(&self, row: usize, name: &str) -> bool {
-        match &self.measurement {
+    /// Which entries of a sensor's measurement are angles.
+    pub fn angles_of(&self, sensor: &SensorAt) -> Vec<bool> {
+        match sensor.measurement {
+            MeasurementFile::Linear { matrix } => vec![false; matrix.len()],
             MeasurementFile::RangeBearing { components, .. } => {
-                components.get(row).is_some_and(|component| component == name)
+                components.iter().map(|component| component == "bearing").collect()
             }
-            _ => false,
+            MeasurementFile::Formulas { z, .. } => z
+                .iter()
+                .map(|component| component.kind == ComponentKind::Angle)
+                .collect(),
+            MeasurementFile::Model { .. } => self.measured_space(sensor).map_or_else(
+                |_| Vec::new(),
+                |space| (0..space.dimension()).map(|entry| space.is_angle(entry)).collect(),
+            ),
         }
     }
 }

@@ -253,7 +253,7 @@ impl Process {
                     answered: beginning(&id),
                 });
             }
-            return read_answer(&message, problem.dimensions());
+            return read_answer(&message, &problem.dimensions());
         }
     }
 }
@@ -313,7 +313,7 @@ impl Drop for Process {
 /// # Errors
 ///
 /// [`Broken`] when it is not one.
-pub fn read_answer(message: &Value, dimensions: Dimensions) -> Result<Answer, Broken> {
+pub fn read_answer(message: &Value, dimensions: &Dimensions) -> Result<Answer, Broken> {
     if !message.is_object() {
         return Err(Broken::Garbage {
             line: beginning(&message.to_string()),

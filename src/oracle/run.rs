@@ -71,11 +71,11 @@ fn own_values<T: Real>(quantity: Quantity, shown: &[f64], number: fn(f64) -> T, 
 impl<T: Real> Setup<T> {
     /// The dimensions of the problem.
     pub fn dimensions(&self) -> Dimensions {
+        let m = |step: usize| self.problem_of(step).m().0;
         Dimensions {
             n: self.problem.n().0,
-            m: self.problem.m().0,
             r: self.problem.modes.len(),
-            steps: self.measurements.len(),
+            m: (1..=self.measurements.len()).map(m).collect(),
         }
     }
 
@@ -91,7 +91,7 @@ impl<T: Real> Setup<T> {
 
     fn exchange(&self, shown: Option<&Trace>, number: fn(f64) -> T, triangle: Triangle) -> Computed<T> {
         let mut filter = self.filter();
-        let mut values = Table::empty(self.dimensions());
+        let mut values = Table::empty(&self.dimensions());
         let mut failures = Vec::new();
         for (index, measurement) in self.measurements.iter().enumerate() {
             let mut exchange = Exchange {
@@ -101,7 +101,7 @@ impl<T: Real> Setup<T> {
                 triangle,
             };
             if !self.changes.is_empty() {
-                filter.change_unchecked(self.changes.get(&(index + 1)).unwrap_or(&self.problem));
+                filter.change_unchecked(self.problem_of(index + 1));
             }
             let Err(failure) = filter.step_observed(measurement.as_ref(), &mut exchange) else {
                 continue;

@@ -10,7 +10,7 @@
 //! like one of variance zero, has no unit of its own but that of the file.
 
 use super::problem::{FilterFile, FixedGainFile, ProblemFile};
-use super::trace::{Dimensions, Trace};
+use super::trace::Trace;
 use crate::imm::Quantity;
 
 /// The unit of a probability that is zero, small enough that any other number is far away, and not zero itself.
@@ -19,7 +19,7 @@ const LEAST_PROBABILITY: f64 = 1e-300;
 /// The scale of every number of a trace.
 pub fn scales(problem: &ProblemFile, trace: &Trace) -> Trace {
     let corrections = match &problem.filter {
-        FilterFile::FixedGain { modes, .. } => Some(corrections(modes, trace.dimensions)),
+        FilterFile::FixedGain { modes, .. } => Some(corrections(modes, trace.dimensions.n)),
         _ => None,
     };
     let corrections = corrections.as_deref();
@@ -27,11 +27,11 @@ pub fn scales(problem: &ProblemFile, trace: &Trace) -> Trace {
 }
 
 /// For each entry of the state √(K S Kᵀ)ᵢᵢ in the mode where it is greatest.
-fn corrections(modes: &[FixedGainFile], Dimensions { n, m, .. }: Dimensions) -> Vec<f64> {
+fn corrections(modes: &[FixedGainFile], n: usize) -> Vec<f64> {
     let variance = |mode: &FixedGainFile, i: usize| -> f64 {
         let (k, s) = (&mode.gain[i], &mode.innovation_covariance);
-        (0..m)
-            .flat_map(|row| (0..m).map(move |column| k[row] * s[row][column] * k[column]))
+        (0..k.len())
+            .flat_map(|row| (0..k.len()).map(move |column| k[row] * s[row][column] * k[column]))
             .sum()
     };
     (0..n)
@@ -52,7 +52,8 @@ fn scale(
     values: &[f64],
 ) -> Vec<f64> {
     use Quantity as Q;
-    let Dimensions { n, m, .. } = trace.dimensions;
+    let n = trace.dimensions.n;
+    let m = trace.dimensions.m[step - 1];
     // The square roots of a covariance's diagonal, of another quantity of the same step and mode; of states where there is no covariance,
     // those of the corrections.
     let deviations = |covariance: Q, size: usize| -> Vec<f64> {
@@ -67,6 +68,11 @@ fn scale(
             .flat_map(|row| columns.iter().map(move |column| row * column))
             .collect()
     };
+    // What maps deviations of the columns to deviations of the rows.
+    let ratio = |rows: &[f64], columns: &[f64]| -> Vec<f64> {
+        let inverse: Vec<f64> = columns.iter().map(|deviation| 1.0 / deviation).collect();
+        outer(rows, &inverse)
+    };
     let square = |covariance: Q, size: usize| {
         let deviations = deviations(covariance, size);
         outer(&deviations, &deviations)
@@ -76,6 +82,14 @@ fn scale(
             values.iter().map(|value| value.max(LEAST_PROBABILITY)).collect()
         }
         Q::MixedMean => deviations(Q::MixedCovariance, n),
+        Q::MotionJacobian => ratio(
+            &deviations(Q::PredictedCovariance, n),
+            &deviations(Q::MixedCovariance, n),
+        ),
+        Q::MeasurementJacobian => ratio(
+            &deviations(Q::InnovationCovariance, m),
+            &deviations(Q::PredictedCovariance, n),
+        ),
         Q::PredictedMean => deviations(Q::PredictedCovariance, n),
         Q::CombinedPredictionMean => deviations(Q::CombinedPredictionCovariance, n),
         Q::UpdatedMean => deviations(Q::UpdatedCovariance, n),
@@ -92,10 +106,10 @@ fn scale(
             &deviations(Q::PredictedCovariance, n),
             &deviations(Q::InnovationCovariance, m),
         ),
-        Q::Gain => {
-            let inverse: Vec<f64> = deviations(Q::InnovationCovariance, m).iter().map(|s| 1.0 / s).collect();
-            outer(&deviations(Q::PredictedCovariance, n), &inverse)
-        }
+        Q::Gain => ratio(
+            &deviations(Q::PredictedCovariance, n),
+            &deviations(Q::InnovationCovariance, m),
+        ),
         Q::LogLikelihood => vec![1.0],
     }
 }

@@ -4,6 +4,7 @@
 
 use super::invalid::Class;
 use super::problem::{self, ProblemFile};
+use super::single;
 use super::trace;
 use crate::imm::Quantity;
 use serde_json::{Map, Value, json};
@@ -22,8 +23,9 @@ pub fn of_problems() -> Value {
         }
     }
     // A motion is said in one of three ways.
-    schema["$defs"]["ModeFile"]["oneOf"] =
-        json!([{ "required": ["F"] }, { "required": ["f"] }, { "required": ["motion"] }]);
+    let one_motion = json!([{ "required": ["F"] }, { "required": ["f"] }, { "required": ["motion"] }]);
+    schema["$defs"]["ModeFile"]["oneOf"] = one_motion.clone();
+    with_short_form(&mut schema, &one_motion);
     // The key is required, and null says that there is no detection.
     schema["$defs"]["MeasurementAt"]["properties"]["z"]["type"] = json!(["array", "null"]);
     // Whether an estimate has a covariance depends on the filter.
@@ -43,6 +45,32 @@ pub fn of_problems() -> Value {
 /// The keys that may be absent in format 2 only.
 const KEYS_OF_FORMAT_1: [&str; 4] = ["about", "flags", "units", "conventions"];
 
+/// A problem of one filter may have what its mode has at the top, and its estimate alone.
+fn with_short_form(schema: &mut Value, one_motion: &Value) {
+    let of_modes = ["modes", "transition"];
+    for key in single::KEYS {
+        schema["properties"][key] = schema["$defs"]["ModeFile"]["properties"][key].clone();
+    }
+    if let Some(required) = schema["required"].as_array_mut() {
+        required.retain(|key| of_modes.iter().all(|of_modes| key != of_modes));
+    }
+    let estimate = json!({ "$ref": "#/$defs/EstimateFile" });
+    let any_initial = json!({ "anyOf": [schema["properties"]["initial"], estimate.clone()] });
+    let long = json!({ "required": of_modes, "properties": { "initial": schema["properties"]["initial"] } });
+    schema["properties"]["initial"] = any_initial;
+    let nothing = |keys: &[&str]| -> Map<String, Value> {
+        keys.iter()
+            .map(|key| ((*key).to_owned(), json!({ "enum": [] })))
+            .collect()
+    };
+    let mut long = long;
+    for (key, never) in nothing(&single::KEYS) {
+        long["properties"][key] = never;
+    }
+    let short = json!({ "required": ["Q"], "oneOf": one_motion, "properties": nothing(&of_modes) });
+    schema["allOf"] = json!([{ "oneOf": [long, short] }]);
+}
+
 /// What holds in format 1 only: more keys are required, and what is new is not there.
 fn of_format_1() -> Value {
     let rows = json!({ "type": "array", "items": { "type": "array", "items": { "type": "number" } } });
@@ -50,15 +78,17 @@ fn of_format_1() -> Value {
     let mut mode = json!({ "properties": Map::from_iter(known), "additionalProperties": false });
     mode["properties"]["Q"] = rows;
     let step = json!({ "properties": { "step": {}, "z": {} }, "additionalProperties": false });
-    let mut schema = json!({ "required": KEYS_OF_FORMAT_1, "properties": {
+    let required: Vec<&str> = [&KEYS_OF_FORMAT_1[..], &["modes", "transition"]].concat();
+    let mut schema = json!({ "required": required, "properties": {
         "format": { "const": problem::FORMAT },
         "state": { "items": { "type": "string" } },
         "modes": { "items": mode },
         "measurement": { "properties": { "kind": { "enum": ["linear", "range-bearing"] } } },
+        "filter": { "properties": { "kind": { "enum": ["kalman", "cubature", "unscented", "converted", "fixed-gain"] } } },
         "measurements": { "items": step },
     } });
     // No value is of no type.
-    for key in ["parameters", "let"] {
+    for key in ["parameters", "let", "sensors"] {
         schema["properties"][key] = json!({ "enum": [] });
     }
     schema

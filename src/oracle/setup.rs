@@ -39,6 +39,16 @@ impl<T: Real> Setup<T> {
     pub fn filter(&self) -> Imm<T, Dyn, Dyn> {
         Imm::unchecked(self.problem.clone(), self.equations.clone(), &self.initial)
     }
+
+    /// The problem, and those of the steps in which it is another.
+    pub(super) fn problems(&self) -> impl Iterator<Item = &Problem<T, Dyn, Dyn>> {
+        std::iter::once(&self.problem).chain(self.changes.values())
+    }
+
+    /// The problem of a step, counted from 1.
+    pub fn problem_of(&self, step: usize) -> &Problem<T, Dyn, Dyn> {
+        self.changes.get(&step).unwrap_or(&self.problem)
+    }
 }
 
 impl ProblemFile {
@@ -50,7 +60,7 @@ impl ProblemFile {
     ///
     /// [`Invalid`] for a measurement, rule or dimension that does not exist.
     pub fn setup<T: Real>(&self, number: fn(f64) -> T) -> Result<Setup<T>, Invalid> {
-        self.setup_with_rule(number, self.rule(number)?)
+        self.setup_with_rules(number, |filter, place| self.rule(filter, place, number))
     }
 
     /// The problem in doubles: in random rounding, which outside of its scope perturbs nothing.
@@ -62,7 +72,9 @@ impl ProblemFile {
     ///
     /// As [`ProblemFile::setup`].
     pub fn setup_in_doubles(&self) -> Result<Setup<RandomRounding>, Invalid> {
-        self.setup_with_rule(RandomRounding::exact, self.rule_in_doubles()?)
+        self.setup_with_rules(RandomRounding::exact, |filter, place| {
+            self.rule_in_doubles(filter, place)
+        })
     }
 
     /// The problem in random rounding, every number perturbed.
@@ -72,7 +84,7 @@ impl ProblemFile {
     /// As [`ProblemFile::setup`].
     pub fn setup_perturbed(&self) -> Result<Setup<RandomRounding>, Invalid> {
         let perturbed = |value: &RandomRounding| RandomRounding::input(value.value());
-        let rule = self.rule_in_doubles()?.map(|rule| Rule {
+        let perturbed_rule = |rule: Rule<RandomRounding, Dyn>| Rule {
             points: rule
                 .points
                 .iter()
@@ -80,21 +92,23 @@ impl ProblemFile {
                 .collect(),
             weights: rule.weights.iter().map(perturbed).collect(),
             covariance_weights: rule.covariance_weights.iter().map(perturbed).collect(),
-        });
-        self.setup_with_rule(RandomRounding::input, rule)
+        };
+        self.setup_with_rules(RandomRounding::input, |filter, place| {
+            Ok(self.rule_in_doubles(filter, place)?.map(perturbed_rule))
+        })
     }
 
     /// The rule in doubles. It is computed once and kept: a search asks for it thousands of times.
-    fn rule_in_doubles(&self) -> Result<Option<Rule<RandomRounding, Dyn>>, Invalid> {
-        if !matches!(self.filter, FilterFile::Cubature { .. } | FilterFile::Unscented { .. }) {
+    fn rule_in_doubles(&self, filter: &FilterFile, place: &str) -> Result<Option<Rule<RandomRounding, Dyn>>, Invalid> {
+        if !matches!(filter, FilterFile::Cubature { .. } | FilterFile::Unscented { .. }) {
             return Ok(None);
         }
-        let name = format!("{:?} {}", self.filter, self.state.len());
+        let name = format!("{filter:?} {}", self.state.len());
         let mut rules = RULES.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(rule) = rules.get(&name) {
             return Ok(rule.clone());
         }
-        let rule = self.rule(RandomRounding::exact)?;
+        let rule = self.rule(filter, place, RandomRounding::exact)?;
         if rules.len() >= RULES_KEPT {
             rules.clear();
         }
@@ -102,7 +116,12 @@ impl ProblemFile {
         Ok(rule)
     }
 
-    fn setup_with_rule<T: Real>(&self, number: fn(f64) -> T, rule: Option<Rule<T, Dyn>>) -> Result<Setup<T>, Invalid> {
+    /// The problem in a number system; `rule_of` gives the rule of a filter, which stands at a place of the file, if it draws points.
+    fn setup_with_rules<T: Real>(
+        &self,
+        number: fn(f64) -> T,
+        rule_of: impl Fn(&FilterFile, &str) -> Result<Option<Rule<T, Dyn>>, Invalid>,
+    ) -> Result<Setup<T>, Invalid> {
         let list = |values: &[f64]| -> Vec<T> { values.iter().map(|&value| number(value)).collect() };
         let functions = self.functions()?;
         let first = self.measurements.iter().position(|entry| entry.interval.is_some());
@@ -116,17 +135,17 @@ impl ProblemFile {
         });
         let problem = Problem {
             modes: self.modes_in(&functions, number, interval),
-            filters: self.filters(number, rule)?,
+            filters: self.filters(number, rule_of)?,
             interaction: match &self.filter {
                 FilterFile::FixedGain { mixing, .. } if mixing == UNMIXED => Interaction::Unmixed,
                 _ => Interaction::Imm,
             },
             chain: self.transition.iter().map(|row| list(row)).collect(),
-            sensor: self.sensor(&functions, number, interval)?,
+            sensor: self.sensor(0, &functions, number, interval)?,
             measurement_noise: matrix(&self.noise, number),
         };
         Ok(Setup {
-            changes: self.changes(&problem, &functions, number)?,
+            changes: self.changes(&problem, &functions, number, interval)?,
             problem,
             equations: Equations::standard(),
             initial: Initial {
@@ -168,14 +187,18 @@ impl ProblemFile {
         problem: &Problem<T, Dyn, Dyn>,
         functions: &Functions,
         number: fn(f64) -> T,
+        of_problem: Option<f64>,
     ) -> Result<BTreeMap<usize, Problem<T, Dyn, Dyn>>, Invalid> {
         let mut changes = BTreeMap::new();
         for entry in self.measurements.iter().filter(|entry| entry.has_changes()) {
             let mut changed = problem.clone();
-            if let Some(interval) = entry.interval {
-                changed.modes = self.modes_in(functions, number, Some(interval));
-                changed.sensor = self.sensor(functions, number, Some(interval))?;
+            let interval = entry.interval.or(of_problem);
+            if entry.interval.is_some() {
+                changed.modes = self.modes_in(functions, number, interval);
             }
+            let sensor = self.sensor_of(entry).unwrap_or(0);
+            changed.sensor = self.sensor(sensor, functions, number, interval)?;
+            changed.measurement_noise = matrix(self.sensors_at()[sensor].noise, number);
             let motions = entry.transitions.iter().flatten();
             for (mode, rows) in changed.modes.iter_mut().zip(motions) {
                 mode.motion = Motion::Linear(matrix(rows, number));
@@ -198,19 +221,23 @@ impl ProblemFile {
         Ok(changes)
     }
 
+    /// The sensor of this number, in a step of this length.
     fn sensor<T: Real>(
         &self,
+        index: usize,
         functions: &Functions,
         number: fn(f64) -> T,
         interval: Option<f64>,
     ) -> Result<Sensor<T, Dyn, Dyn>, Invalid> {
-        if let Some((bound, space)) = &functions.sensor {
+        if let Some((bound, space)) = &functions.sensors[index] {
             return Ok(bound.sensor(space, number, interval));
         }
-        match &self.measurement {
+        let sensor_at = &self.sensors_at()[index];
+        let place = format!("{}.measurement", sensor_at.place);
+        match sensor_at.measurement {
             MeasurementFile::Formulas { .. } | MeasurementFile::Model { .. } => {
                 let reason = "is no function of the state";
-                Err(Invalid::new(Class::Unknown, "problem.measurement", reason))
+                Err(Invalid::new(Class::Unknown, place, reason))
             }
             MeasurementFile::Linear { matrix: rows } => Ok(Sensor::Linear(matrix(rows, number))),
             MeasurementFile::RangeBearing {
@@ -219,12 +246,12 @@ impl ProblemFile {
                 sensor,
             } => {
                 let mut named = vec![PolarComponent::Range; components.len()];
-                for (place, (component, name)) in named.iter_mut().zip(components).enumerate() {
+                for (row, (component, name)) in named.iter_mut().zip(components).enumerate() {
                     *component = match name.as_str() {
                         "range" => PolarComponent::Range,
                         "bearing" => PolarComponent::Bearing,
                         _ => {
-                            let field = format!("problem.measurement.components[{place}]");
+                            let field = format!("{place}.components[{row}]");
                             let reason = format!("is {name:?}; a component is \"range\" or \"bearing\"");
                             return Err(Invalid::new(Class::Unknown, field, reason));
                         }
@@ -239,41 +266,68 @@ impl ProblemFile {
         }
     }
 
-    /// The filters of the modes, with the rule of those that draw points.
+    /// The filters: one a mode, or one for all.
     fn filters<T: Real>(
         &self,
         number: fn(f64) -> T,
-        rule: Option<Rule<T, Dyn>>,
+        rule_of: impl Fn(&FilterFile, &str) -> Result<Option<Rule<T, Dyn>>, Invalid>,
     ) -> Result<Vec<Filter<T, Dyn, Dyn>>, Invalid> {
-        Ok(match (&self.filter, rule) {
-            (_, Some(rule)) => vec![Filter::points(rule)],
-            (FilterFile::Converted { conversion }, _) => {
-                let unknown = |error: UnknownConversion| {
-                    Invalid::new(Class::Unknown, "problem.filter.conversion", error.to_string())
-                };
-                vec![Filter::converted(conversion.parse().map_err(unknown)?)]
-            }
-            (FilterFile::FixedGain { modes, .. }, _) => {
-                let given = modes.iter().map(|mode| FixedGain {
-                    gain: matrix(&mode.gain, number),
-                    innovation_covariance: matrix(&mode.innovation_covariance, number),
-                });
-                given.map(Filter::given).collect()
-            }
-            _ => vec![Filter::kalman()],
-        })
+        if let FilterFile::FixedGain { modes, .. } = &self.filter {
+            let given = modes.iter().map(|mode| FixedGain {
+                gain: matrix(&mode.gain, number),
+                innovation_covariance: matrix(&mode.innovation_covariance, number),
+            });
+            return Ok(given.map(Filter::given).collect());
+        }
+        let filter_of = |(filter, place): (&FilterFile, String)| {
+            Ok(match filter {
+                FilterFile::Converted { conversion } => {
+                    let unknown = |error: UnknownConversion| {
+                        Invalid::new(Class::Unknown, format!("{place}.conversion"), error.to_string())
+                    };
+                    Filter::converted(conversion.parse().map_err(unknown)?)
+                }
+                FilterFile::Extended {} => Filter::extended(),
+                _ => match rule_of(filter, &place)? {
+                    Some(rule) => Filter::points(rule),
+                    None => Filter::kalman(),
+                },
+            })
+        };
+        self.filters_with_places().into_iter().map(filter_of).collect()
     }
 
-    fn rule<T: Real>(&self, number: fn(f64) -> T) -> Result<Option<Rule<T, Dyn>>, Invalid> {
+    /// The filters with their places in the file: one for all modes, or one a mode where a mode has its own.
+    pub(super) fn filters_with_places(&self) -> Vec<(&FilterFile, String)> {
+        let of_problem = || (&self.filter, "problem.filter".to_owned());
+        if self.modes.iter().all(|mode| mode.models.filter.is_none()) {
+            return vec![of_problem()];
+        }
+        let of_mode = |(j, mode): (usize, &'_ ModeFile)| match &mode.models.filter {
+            Some(_) => (self.filter_of(j), format!("problem.modes[{j}].filter")),
+            None => of_problem(),
+        };
+        self.modes.iter().enumerate().map(of_mode).collect()
+    }
+
+    fn rule<T: Real>(
+        &self,
+        filter: &FilterFile,
+        place: &str,
+        number: fn(f64) -> T,
+    ) -> Result<Option<Rule<T, Dyn>>, Invalid> {
         let n = Dyn(self.state.len());
-        let (field, rule) = match &self.filter {
-            FilterFile::Kalman {} | FilterFile::FixedGain { .. } | FilterFile::Converted { .. } => return Ok(None),
+        let (field, rule) = match filter {
+            FilterFile::Kalman {}
+            | FilterFile::Extended {}
+            | FilterFile::FixedGain { .. }
+            | FilterFile::Converted { .. } => return Ok(None),
             FilterFile::Cubature { rule } => (
-                "problem.filter.rule",
+                format!("{place}.rule"),
                 rule.parse::<RuleName>().and_then(|name| name.rule_in(n)),
             ),
             FilterFile::Unscented { alpha, beta, kappa } => (
-                "problem.filter",
+                place.to_owned(),
                 unscented::unscented_in(n, &number(*alpha), &number(*beta), &number(*kappa)),
             ),
         };

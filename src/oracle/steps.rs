@@ -3,7 +3,9 @@
 //! After this file the reader knows where a file of format 1 is told that it needs format 2, and what a step may replace.
 
 use super::invalid::{Class, Invalid};
-use super::problem::{FORMAT, FORMAT_2, MeasurementAt, MeasurementFile, ModeFile, ProblemFile, Rows};
+use super::problem::{
+    FORMAT, FORMAT_2, FilterFile, MeasurementAt, MeasurementFile, ModeFile, ProblemFile, Rows, SensorAt,
+};
 use super::well_formed::{check_length, check_matrix};
 use crate::model::binding::STEP;
 
@@ -42,6 +44,12 @@ impl ProblemFile {
         if self.measurement.is_function() {
             return Some("problem.measurement.kind".to_owned());
         }
+        if !self.sensors.is_empty() {
+            return Some("problem.sensors".to_owned());
+        }
+        if matches!(self.filter, FilterFile::Extended {}) {
+            return Some("problem.filter.kind".to_owned());
+        }
         let mut steps = self.measurements.iter().enumerate();
         steps.find_map(|(k, entry)| Some(format!("problem.measurements[{k}].{}", entry.first_change()?)))
     }
@@ -55,21 +63,23 @@ impl ProblemFile {
             return Err(Invalid::new(Class::Format, "problem.units", reason));
         }
         let functions = self.functions()?;
-        if let Some((_, space)) = &functions.sensor
-            && space.dimension() != self.noise.len()
-        {
-            let reason = format!(
-                "has {} rows, and the measurement gives {}: {}",
-                self.noise.len(),
-                space.dimension(),
-                space.names().join(", ")
-            );
-            return Err(Invalid::new(Class::Shape, "problem.R", reason));
+        for (sensor, function) in self.sensors_at().iter().zip(&functions.sensors) {
+            let (rows, Some((_, space))) = (sensor.noise.len(), function) else {
+                continue;
+            };
+            if space.dimension() != rows {
+                let reason = format!(
+                    "has {rows} rows, and the measurement gives {}: {}",
+                    space.dimension(),
+                    space.names().join(", ")
+                );
+                return Err(Invalid::new(Class::Shape, format!("{}.R", sensor.place), reason));
+            }
         }
         self.check_intervals()?;
         let of_modes = functions.modes.iter().flatten().flatten();
-        let of_sensor = functions.sensor.iter().map(|(bound, _)| bound);
-        for bound in of_modes.chain(of_sensor).filter(|bound| bound.needs_interval()) {
+        let of_sensors = functions.sensors.iter().flatten().map(|(bound, _)| bound);
+        for bound in of_modes.chain(of_sensors).filter(|bound| bound.needs_interval()) {
             if let Some(k) = (0..self.measurements.len()).find(|&k| self.interval(k).is_none()) {
                 let reason = format!("is missing: {} needs the length of every step", bound.place());
                 return Err(Invalid::new(
@@ -105,8 +115,8 @@ impl ProblemFile {
     }
 
     /// What a step replaces has the right shape.
-    pub(super) fn check_changes(&self, k: usize, entry: &MeasurementAt) -> Result<(), Invalid> {
-        let (n, m, r) = (self.state.len(), self.noise.len(), self.modes.len());
+    pub(super) fn check_changes(&self, k: usize, entry: &MeasurementAt, sensor: &SensorAt) -> Result<(), Invalid> {
+        let (n, m, r) = (self.state.len(), sensor.noise.len(), self.modes.len());
         let place = |key: &str| format!("problem.measurements[{k}].{key}");
         let lists: [(&str, &Option<Vec<Rows>>); 2] = [("F", &entry.transitions), ("Q", &entry.noises)];
         for (key, list) in lists {
@@ -117,7 +127,7 @@ impl ProblemFile {
             }
         }
         if let Some(rows) = &entry.matrix {
-            if !matches!(self.measurement, MeasurementFile::Linear { .. }) {
+            if !matches!(sensor.measurement, MeasurementFile::Linear { .. }) {
                 let reason = "replaces the matrix of a linear measurement, and this measurement is none";
                 return Err(Invalid::new(Class::Format, place("H"), reason));
             }
@@ -142,6 +152,7 @@ fn new_key_of_mode(mode: &ModeFile) -> Option<&'static str> {
         ("Q", models.noise.is_some()),
         ("let", !models.definitions.is_empty()),
         ("parameters", !models.parameters.is_empty()),
+        ("filter", models.filter.is_some()),
     ];
     keys.into_iter().find(|(_, is_there)| *is_there).map(|(key, _)| key)
 }

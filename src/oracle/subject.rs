@@ -4,7 +4,7 @@
 //! ([`super::process`]) and a folder of answers ([`super::folder`]) implement the same.
 
 use super::invalid::Invalid;
-use super::problem::ProblemFile;
+use super::problem::{FORMAT, ProblemFile};
 use super::trace::Trace;
 use super::variant;
 use crate::file::shortened;
@@ -62,6 +62,8 @@ pub struct Ready {
     pub conventions: BTreeMap<String, String>,
     /// The filters it has, by [`FilterFile::name`](super::problem::FilterFile::name); none means all.
     pub kinds: Option<Vec<String>>,
+    /// The formats of problems that it reads; none means all.
+    pub formats: Option<Vec<String>>,
     /// The echo's matrix times its vector.
     pub echo: Option<Vec<f64>>,
     /// Whether it checks its input.
@@ -75,6 +77,7 @@ impl Default for Ready {
             precision: Precision::Double,
             conventions: BTreeMap::new(),
             kinds: None,
+            formats: None,
             echo: None,
             validates: true,
         }
@@ -100,7 +103,11 @@ impl Ready {
     ///
     /// The reason why it cannot be understood.
     pub fn read(message: &Value) -> Result<Self, String> {
-        let mut ready = Self::default();
+        // Who says nothing of formats was written for the first one.
+        let mut ready = Self {
+            formats: Some(vec![FORMAT.to_owned()]),
+            ..Self::default()
+        };
         let object = message.as_object().ok_or("the ready message is not an object")?;
         for (key, value) in object {
             match key.as_str() {
@@ -109,15 +116,8 @@ impl Ready {
                 "name" => ready.name = shortened(value.as_str().ok_or("`name` is not a string")?, 200),
                 "precision" => ready.precision = read_precision(value)?,
                 "conventions" => ready.conventions = read_conventions(value)?,
-                "kinds" => {
-                    let names = value.as_array().ok_or("`kinds` is not a list")?;
-                    let names = names.iter().map(|name| name.as_str().map(str::to_owned));
-                    ready.kinds = Some(
-                        names
-                            .collect::<Option<_>>()
-                            .ok_or("`kinds` has an entry that is not a string")?,
-                    );
-                }
+                "kinds" => ready.kinds = Some(words_of(key, value)?),
+                "formats" => ready.formats = Some(words_of(key, value)?),
                 "echo" => {
                     let list = value.as_array().ok_or("`echo` is not a list")?;
                     ready.echo = Some(list.iter().flat_map(numbers_of).collect());
@@ -128,6 +128,15 @@ impl Ready {
         }
         Ok(ready)
     }
+}
+
+/// The list of words under a key.
+fn words_of(key: &str, value: &Value) -> Result<Vec<String>, String> {
+    let list = value.as_array().ok_or_else(|| format!("`{key}` is not a list"))?;
+    let words = list.iter().map(|word| word.as_str().map(str::to_owned));
+    words
+        .collect::<Option<_>>()
+        .ok_or_else(|| format!("`{key}` has an entry that is not a string"))
 }
 
 /// The numbers of a value, whether it is one or a list.
@@ -265,7 +274,7 @@ pub enum Broken {
 ///     fn run(&mut self, problem: &ProblemFile) -> Answer {
 ///         let before = &problem.initial.mode_probabilities;
 ///         let into = |j: usize| problem.transition.iter().zip(before).map(|(row, mu)| row[j] * mu).sum();
-///         let mut trace = Trace::empty(problem.dimensions());
+///         let mut trace = Trace::empty(&problem.dimensions());
 ///         trace.set(1, Quantity::PredictedModeProbabilities, 0, (0..before.len()).map(into).collect());
 ///         Answer::Steps { trace, error: None }
 ///     }
@@ -367,7 +376,7 @@ impl Planted {
         }
         let computed = setup.run();
         let values = computed.in_doubles();
-        let mut trace = Trace::empty(setup.dimensions());
+        let mut trace = Trace::empty(&setup.dimensions());
         for (step, quantity, mode) in values.all_places() {
             let Some(value) = values.get(step, quantity, mode) else {
                 continue;

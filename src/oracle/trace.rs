@@ -12,32 +12,45 @@ use serde_json::{Map, Value, json};
 pub const FORMAT: &str = "immaculate-trace/1";
 
 /// The dimensions of the problem that a trace belongs to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Dimensions {
     /// Entries of the state.
     pub n: usize,
-    /// Entries of the measurement.
-    pub m: usize,
     /// Modes.
     pub r: usize,
-    /// Steps.
-    pub steps: usize,
+    /// Entries of the measurement of each step: sensors differ.
+    pub m: Vec<usize>,
 }
 
 impl Dimensions {
+    /// Those of a problem with one sensor: entries of the state and of the measurement, modes, and steps.
+    pub fn new(n: usize, m: usize, r: usize, steps: usize) -> Self {
+        let m = vec![m; steps];
+        Self { n, r, m }
+    }
+
+    /// Steps.
+    pub fn steps(&self) -> usize {
+        self.m.len()
+    }
+
+    /// Rows and columns of a quantity in a step, which counts from 1.
+    pub fn shape(&self, step: usize, quantity: Quantity) -> (usize, usize) {
+        let m = self.m.get(step - 1).copied().unwrap_or(0);
+        quantity.shape(self.n, m, self.r)
+    }
+
     /// The numbers of a trace in which everything is shown.
-    pub fn numbers(self) -> usize {
-        let Self { n, m, r, steps } = self;
-        let of_quantity = |quantity: Quantity| {
-            let (rows, columns) = quantity.shape(n, m, r);
-            let modes = if quantity.is_of_mode() { r } else { 1 };
-            rows.saturating_mul(columns).saturating_mul(modes)
-        };
-        let of_step = Quantity::ALL
-            .map(of_quantity)
-            .into_iter()
-            .fold(0, usize::saturating_add);
-        steps.saturating_mul(of_step)
+    pub fn numbers(&self) -> usize {
+        let mut numbers: usize = 0;
+        for step in 1..=self.steps() {
+            for quantity in Quantity::ALL {
+                let (rows, columns) = self.shape(step, quantity);
+                let modes = if quantity.is_of_mode() { self.r } else { 1 };
+                numbers = numbers.saturating_add(rows.saturating_mul(columns).saturating_mul(modes));
+            }
+        }
+        numbers
     }
 }
 
@@ -54,10 +67,10 @@ pub type Trace = Table<Vec<f64>>;
 
 impl<V> Table<V> {
     /// A table in which nothing is shown.
-    pub fn empty(dimensions: Dimensions) -> Self {
-        let cells = dimensions.steps * Quantity::ALL.len() * dimensions.r;
+    pub fn empty(dimensions: &Dimensions) -> Self {
+        let cells = dimensions.steps() * Quantity::ALL.len() * dimensions.r;
         Self {
-            dimensions,
+            dimensions: dimensions.clone(),
             cells: std::iter::repeat_with(|| None).take(cells).collect(),
         }
     }
@@ -93,16 +106,32 @@ impl<V> Table<V> {
 
     /// All places of all steps.
     pub fn all_places(&self) -> impl Iterator<Item = (usize, Quantity, usize)> + use<'_, V> {
-        (1..=self.dimensions.steps).flat_map(|step| self.places(step))
+        (1..=self.dimensions.steps()).flat_map(|step| self.places(step))
     }
 
     /// A table with another value in each place that has one.
     pub fn map<W>(&self, mut other: impl FnMut((usize, Quantity, usize), &V) -> W) -> Table<W> {
-        let mut table = Table::empty(self.dimensions);
+        let mut table = Table::empty(&self.dimensions);
         for place in self.all_places() {
             if let Some(value) = self.get(place.0, place.1, place.2) {
                 table.set(place.0, place.1, place.2, other(place, value));
             }
+        }
+        table
+    }
+
+    /// The first steps alone.
+    pub fn beginning(&self, steps: usize) -> Self
+    where
+        V: Clone,
+    {
+        let dimensions = Dimensions {
+            m: self.dimensions.m.iter().take(steps).copied().collect(),
+            ..self.dimensions.clone()
+        };
+        let mut table = Self::empty(&dimensions);
+        for (cell, own) in table.cells.iter_mut().zip(&self.cells) {
+            cell.clone_from(own);
         }
         table
     }
@@ -113,9 +142,9 @@ impl<V> Table<V> {
     }
 
     /// The list of steps as JSON; `leaf` writes a value.
-    pub fn to_json(&self, leaf: impl Fn(Quantity, &V) -> Value) -> Vec<Value> {
-        let Dimensions { r, steps, .. } = self.dimensions;
-        (1..=steps)
+    pub fn to_json(&self, leaf: impl Fn((usize, Quantity), &V) -> Value) -> Vec<Value> {
+        let r = self.dimensions.r;
+        (1..=self.dimensions.steps())
             .map(|step| {
                 let mut whole = Map::new();
                 whole.insert("step".into(), json!(step));
@@ -124,7 +153,7 @@ impl<V> Table<V> {
                     let Some(value) = self.get(step, quantity, mode) else {
                         continue;
                     };
-                    let value = leaf(quantity, value);
+                    let value = leaf((step, quantity), value);
                     if quantity.is_of_mode() {
                         // The modes stand where the first of their values is computed.
                         whole.entry("modes").or_insert(Value::Null);
@@ -158,12 +187,14 @@ fn insert(object: &mut Map<String, Value>, name: &str, value: Value) {
 }
 
 /// The numbers of a quantity as JSON: a number, a list, or a list of rows (one of length one, too).
-pub fn numbers_as_json<X: Serialize>(quantity: Quantity, dimensions: Dimensions, values: &[X]) -> Value {
-    let Dimensions { n, m, r, .. } = dimensions;
+pub fn numbers_as_json<X: Serialize>((step, quantity): (usize, Quantity), of: &Dimensions, values: &[X]) -> Value {
     match quantity.rank() {
         0 => json!(values[0]),
         1 => json!(values),
-        _ => values.chunks(quantity.shape(n, m, r).1).map(|row| json!(row)).collect(),
+        _ => values
+            .chunks(of.shape(step, quantity).1)
+            .map(|row| json!(row))
+            .collect(),
     }
 }
 
@@ -173,14 +204,13 @@ impl Trace {
     /// # Errors
     ///
     /// [`Invalid`] with the place.
-    pub fn check(&self, dimensions: Dimensions) -> Result<(), Invalid> {
-        if self.dimensions != dimensions {
+    pub fn check(&self, dimensions: &Dimensions) -> Result<(), Invalid> {
+        if self.dimensions != *dimensions {
             let reason = format!("has {:?} where the problem has {dimensions:?}", self.dimensions);
             return Err(Invalid::new(Class::Shape, "trace", reason));
         }
-        let Dimensions { n, m, r, .. } = dimensions;
         for (step, quantity, mode) in self.all_places() {
-            let (rows, columns) = quantity.shape(n, m, r);
+            let (rows, columns) = dimensions.shape(step, quantity);
             let found = self.get(step, quantity, mode).map_or(rows * columns, Vec::len);
             if found != rows * columns {
                 let place = format!("step {step}, mode {mode}: {}", quantity.name());
@@ -199,7 +229,7 @@ impl Trace {
 
     /// The list of steps as JSON.
     pub fn steps_as_json(&self) -> Vec<Value> {
-        self.to_json(|quantity, values| numbers_as_json(quantity, self.dimensions, values))
+        self.to_json(|place, values| numbers_as_json(place, &self.dimensions, values))
     }
 
     /// Reads the list of steps of a trace or an answer, with patience. What is not finite becomes NaN.
@@ -211,18 +241,19 @@ impl Trace {
     /// use immaculate::oracle::trace::{Dimensions, Trace};
     /// use serde_json::json;
     ///
-    /// let dimensions = Dimensions { n: 1, m: 1, r: 1, steps: 1 };
+    /// let dimensions = Dimensions::new(1, 1, 1, 1);
     /// let steps = json!([{ "step": 1, "modes": { "gain": 0.75 } }]);
-    /// let trace = Trace::from_json(&steps, dimensions).unwrap();
+    /// let trace = Trace::from_json(&steps, &dimensions).unwrap();
     /// assert_eq!(trace.get(1, Quantity::Gain, 0), Some(&vec![0.75]));
     /// ```
     ///
     /// # Errors
     ///
     /// [`Invalid`] with the place, for a key that does not exist, a step that does not exist or comes twice, and a wrong count of numbers.
-    pub fn from_json(steps: &Value, dimensions: Dimensions) -> Result<Self, Invalid> {
+    pub fn from_json(steps: &Value, dimensions: &Dimensions) -> Result<Self, Invalid> {
+        let steps_of_problem = dimensions.steps();
         let mut trace = Self::empty(dimensions);
-        let mut seen = vec![false; dimensions.steps];
+        let mut seen = vec![false; steps_of_problem];
         for (index, step) in as_list(steps).iter().enumerate() {
             let place = format!("steps[{index}]");
             let object = as_object(step, &place)?;
@@ -233,8 +264,8 @@ impl Trace {
                     "is missing, or not a whole number",
                 )
             })?;
-            if number == 0 || number > dimensions.steps {
-                let reason = format!("is {number}, but the problem has steps 1 to {}", dimensions.steps);
+            if number == 0 || number > steps_of_problem {
+                let reason = format!("is {number}, but the problem has steps 1 to {steps_of_problem}");
                 return Err(Invalid::new(Class::Shape, format!("{place}.step"), reason));
             }
             if std::mem::replace(&mut seen[number - 1], true) {
@@ -319,8 +350,7 @@ fn read_numbers(
     value: &Value,
     place: &str,
 ) -> Result<(), Invalid> {
-    let Dimensions { n, m, r, .. } = trace.dimensions;
-    let (rows, columns) = quantity.shape(n, m, r);
+    let (rows, columns) = trace.dimensions.shape(at.0, quantity);
     let mut numbers = Vec::new();
     flatten(value, place, &mut numbers)?;
     if numbers.is_empty() {

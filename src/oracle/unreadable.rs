@@ -43,6 +43,7 @@ const OBJECTS: [(&str, &[Kind]); 2] = [
         "filter",
         &[
             ("kalman", &[]),
+            ("extended", &[]),
             ("cubature", &[("rule", attempt::<String>)]),
             (
                 "unscented",
@@ -73,9 +74,10 @@ fn attempt<T: DeserializeOwned>(value: &Value) -> Result<(), (String, String)> {
 /// The reason why a problem cannot be read, from the place and the sentence of the JSON reader.
 pub(super) fn reason(text: &str, place: &str, sentence: &str) -> Invalid {
     let place = joined("problem", place);
+    let object = place.strip_suffix(".kind").unwrap_or(&place);
     for (key, kinds) in OBJECTS {
-        if [format!("problem.{key}"), format!("problem.{key}.kind")].contains(&place)
-            && let Some(invalid) = inside(text, key, kinds)
+        if object.ends_with(&format!(".{key}"))
+            && let Some(invalid) = inside(text, object, kinds)
         {
             return invalid;
         }
@@ -113,12 +115,17 @@ fn joined(outer: &str, inner: &str) -> String {
     }
 }
 
+/// The value at a place of a file, such as `problem.sensors[0].measurement`.
+fn value_at<'a>(file: &'a Value, place: &str) -> Option<&'a Value> {
+    let pointer = place.strip_prefix("problem")?.replace(['.', '['], "/").replace(']', "");
+    file.pointer(&pointer)
+}
+
 /// What is wrong inside an object that has a kind, if the rest of the file is JSON.
-fn inside(text: &str, key: &str, kinds: &[Kind]) -> Option<Invalid> {
+fn inside(text: &str, place: &str, kinds: &[Kind]) -> Option<Invalid> {
     let file: Value = serde_json::from_str(text).ok()?;
-    let place = format!("problem.{key}");
-    let wrong = |class, inner: &str, reason: String| Some(Invalid::new(class, joined(&place, inner), reason));
-    let Some(object) = file.get(key)?.as_object() else {
+    let wrong = |class, inner: &str, reason: String| Some(Invalid::new(class, joined(place, inner), reason));
+    let Some(object) = value_at(&file, place)?.as_object() else {
         return wrong(Class::Format, ".", "is not an object".into());
     };
     let Some(name) = object.get("kind") else {
@@ -144,7 +151,7 @@ fn inside(text: &str, key: &str, kinds: &[Kind]) -> Option<Invalid> {
             return wrong(Class::Format, key, "is missing".into());
         };
         if let Err((inner, sentence)) = attempt(value) {
-            return Some(at(joined(&place, &joined(key, &inner)), &sentence));
+            return Some(at(joined(place, &joined(key, &inner)), &sentence));
         }
     }
     None

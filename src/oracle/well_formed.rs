@@ -5,11 +5,14 @@
 
 use super::invalid::{Class, Invalid};
 use super::problem::{
-    Conventions, FORMAT, FORMAT_2, FilterFile, FixedGainFile, MIXINGS, MeasurementFile, ProblemFile, RULES, Rows,
+    Conventions, FORMAT, FORMAT_2, FilterFile, FixedGainFile, MIXINGS, MeasurementAt, MeasurementFile, ProblemFile,
+    RULES, Rows, SensorFile,
 };
 use super::trace::Dimensions;
+use crate::file::shortened;
 use crate::imm::{InvalidProblem, Needs};
 use crate::model::Conversion;
+use crate::model::nearest::nearest;
 
 impl ProblemFile {
     /// Checks all that the filter relies on.
@@ -28,9 +31,9 @@ impl ProblemFile {
         self.check_new_keys()?;
         self.check_conventions()?;
         self.check_shapes()?;
-        check_size(self.dimensions())?;
+        check_size(&self.dimensions())?;
         self.check_functions()?;
-        self.check_filter()?;
+        self.check_filters()?;
         self.check_measurements()?;
         self.check_values()
     }
@@ -84,13 +87,16 @@ impl ProblemFile {
     }
 
     fn check_shapes(&self) -> Result<(), Invalid> {
-        let Dimensions { n, m, r, .. } = self.dimensions();
+        let (n, r) = (self.state.len(), self.modes.len());
         check_count("problem.state", n, MOST_STATES)?;
-        check_count("problem.R", m, MOST_MEASURED)?;
         if self.format == FORMAT || !self.units.is_empty() {
             check_length("problem.units", self.units.len(), n)?;
         }
-        check_matrix("problem.R", &self.noise, m, m)?;
+        for sensor in self.sensors_at() {
+            let (place, m) = (format!("{}.R", sensor.place), sensor.noise.len());
+            check_count(&place, m, MOST_MEASURED)?;
+            check_matrix(&place, sensor.noise, m, m)?;
+        }
         if r == 0 {
             return Err(Invalid::new(
                 Class::Shape,
@@ -106,13 +112,16 @@ impl ProblemFile {
                 check_matrix(&format!("problem.modes[{j}].Q"), &mode.noise, n, n)?;
             }
         }
-        match &self.measurement {
-            MeasurementFile::Linear { matrix } => check_matrix("problem.measurement.H", matrix, m, n)?,
-            MeasurementFile::RangeBearing { components, .. } => {
-                check_length("problem.measurement.components", components.len(), m)?;
+        for sensor in self.sensors_at() {
+            let (place, m) = (format!("{}.measurement", sensor.place), sensor.noise.len());
+            match sensor.measurement {
+                MeasurementFile::Linear { matrix } => check_matrix(&format!("{place}.H"), matrix, m, n)?,
+                MeasurementFile::RangeBearing { components, .. } => {
+                    check_length(&format!("{place}.components"), components.len(), m)?;
+                }
+                MeasurementFile::Formulas { z, .. } => check_length(&format!("{place}.z"), z.len(), m)?,
+                MeasurementFile::Model { .. } => {}
             }
-            MeasurementFile::Formulas { z, .. } => check_length("problem.measurement.z", z.len(), m)?,
-            MeasurementFile::Model { .. } => {}
         }
         check_matrix("problem.transition", &self.transition, r, r)?;
         check_length("problem.initial.modes", self.initial.modes.len(), r)?;
@@ -139,43 +148,90 @@ impl ProblemFile {
         Ok(())
     }
 
-    fn check_filter(&self) -> Result<(), Invalid> {
-        match &self.filter {
+    fn check_filters(&self) -> Result<(), Invalid> {
+        for (filter, place) in self.filters_with_places() {
+            for sensor in self.sensors_at() {
+                self.check_filter(filter, &place, sensor.measurement)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// A filter is there for what a sensor measures.
+    fn check_filter(&self, filter: &FilterFile, place: &str, measurement: &MeasurementFile) -> Result<(), Invalid> {
+        let is_polar = matches!(measurement, MeasurementFile::RangeBearing { .. });
+        let unknown = |key: &str, reason: String| Err(Invalid::new(Class::Unknown, format!("{place}.{key}"), reason));
+        match filter {
             FilterFile::Cubature { rule } if !RULES.contains(&rule.as_str()) => {
-                let reason = format!("is {rule:?}; known are {}", RULES.join(", "));
-                Err(Invalid::new(Class::Unknown, "problem.filter.rule", reason))
+                unknown("rule", format!("is {rule:?}; known are {}", RULES.join(", ")))
             }
-            FilterFile::Kalman {} | FilterFile::FixedGain { .. }
-                if matches!(self.measurement, MeasurementFile::RangeBearing { .. }) =>
-            {
-                let name = self.filter.name();
-                let reason =
-                    format!("is {name}, which has no range and bearing; use a filter with points, or converted");
-                Err(Invalid::new(Class::Unknown, "problem.filter.kind", reason))
-            }
+            FilterFile::Kalman {} | FilterFile::FixedGain { .. } if is_polar => unknown(
+                "kind",
+                format!(
+                    "is {}, which has no range and bearing; use extended, a filter with points, or converted",
+                    filter.name()
+                ),
+            ),
             FilterFile::Converted { conversion } if conversion.parse::<Conversion>().is_err() => {
-                let reason = format!(
-                    "is {conversion:?}; known are {}",
-                    Conversion::ALL.map(Conversion::name).join(", ")
-                );
-                Err(Invalid::new(Class::Unknown, "problem.filter.conversion", reason))
+                let known = Conversion::ALL.map(Conversion::name).join(", ");
+                unknown("conversion", format!("is {conversion:?}; known are {known}"))
             }
-            FilterFile::Converted { .. } if !matches!(self.measurement, MeasurementFile::RangeBearing { .. }) => {
-                let reason = match self.measurement {
+            FilterFile::Converted { .. } if !is_polar => {
+                let reason = match measurement {
                     MeasurementFile::Linear { .. } => {
                         "is converted, but a linear measurement is no range and bearing to be converted"
                     }
                     _ => "is converted, which asks for a measurement of the kind \"range-bearing\"",
                 };
-                Err(Invalid::new(Class::Unknown, "problem.filter.kind", reason))
+                unknown("kind", reason.to_owned())
             }
+            FilterFile::FixedGain { .. } if place != "problem.filter" => unknown(
+                "kind",
+                "is fixed-gain, which is said of all modes at once, in `problem.filter`".to_owned(),
+            ),
+            FilterFile::FixedGain { .. } if self.modes.iter().any(|mode| mode.models.filter.is_some()) => unknown(
+                "kind",
+                "is fixed-gain, and a mode has a filter of its own; gains are given to all or none".to_owned(),
+            ),
+            FilterFile::FixedGain { .. } if !self.sensors.is_empty() => unknown(
+                "kind",
+                "is fixed-gain, and there are further sensors; gains are given for one".to_owned(),
+            ),
             FilterFile::FixedGain { mixing, modes } => self.check_fixed_gains(mixing, modes),
             _ => Ok(()),
         }
     }
 
+    /// Sensors are told apart by their names.
+    fn check_names_of_sensors(&self) -> Result<(), Invalid> {
+        for (index, sensor) in self.sensors.iter().enumerate() {
+            let has_name = |other: &SensorFile| other.name == sensor.name;
+            if self.sensors[..index].iter().any(has_name) {
+                let (place, reason) = (
+                    format!("problem.sensors[{index}].name"),
+                    "is the name of another sensor",
+                );
+                return Err(Invalid::new(Class::Format, place, reason));
+            }
+        }
+        Ok(())
+    }
+
+    /// What is said of a step whose sensor does not exist.
+    fn no_such_sensor(&self, place: usize, entry: &MeasurementAt) -> Invalid {
+        let name = entry.sensor.as_deref().unwrap_or_default();
+        let known = || self.sensors.iter().map(|sensor| sensor.name.as_str());
+        let hint = match nearest(name, known()) {
+            Some(near) => format!("; the nearest name is `{near}`"),
+            None if self.sensors.is_empty() => "; `sensors` is empty".to_owned(),
+            None => format!("; known are {}", known().collect::<Vec<_>>().join(", ")),
+        };
+        let reason = format!("is {:?}, and there is no such sensor{hint}", shortened(name, 64));
+        Invalid::new(Class::Unknown, format!("problem.measurements[{place}].sensor"), reason)
+    }
+
     fn check_fixed_gains(&self, mixing: &str, modes: &[FixedGainFile]) -> Result<(), Invalid> {
-        let Dimensions { n, m, r, .. } = self.dimensions();
+        let (n, m, r) = (self.state.len(), self.noise.len(), self.modes.len());
         if !MIXINGS.contains(&mixing) {
             let reason = format!("is {mixing:?}; known are {}", MIXINGS.join(", "));
             return Err(Invalid::new(Class::Unknown, "problem.filter.mixing", reason));
@@ -190,7 +246,9 @@ impl ProblemFile {
     }
 
     fn check_measurements(&self) -> Result<(), Invalid> {
-        let m = self.noise.len();
+        let sensors = self.sensors_at();
+        self.check_names_of_sensors()?;
+        let angles: Vec<Vec<bool>> = sensors.iter().map(|sensor| self.angles_of(sensor)).collect();
         for (place, entry) in self.measurements.iter().enumerate() {
             if entry.step != place + 1 {
                 let field = format!("problem.measurements[{place}].step");
@@ -201,10 +259,12 @@ impl ProblemFile {
                 );
                 return Err(Invalid::new(Class::Shape, field, reason));
             }
-            self.check_changes(place, entry)?;
+            let index = self.sensor_of(entry).ok_or_else(|| self.no_such_sensor(place, entry))?;
+            let sensor = &sensors[index];
+            self.check_changes(place, entry, sensor)?;
             let Some(z) = &entry.z else { continue };
             let field = format!("problem.measurements[{place}].z");
-            check_length(&field, z.len(), m)?;
+            check_length(&field, z.len(), sensor.noise.len())?;
             for (row, value) in z.iter().enumerate() {
                 if !value.is_finite() {
                     return Err(Invalid::new(
@@ -213,11 +273,11 @@ impl ProblemFile {
                         "is not finite",
                     ));
                 }
-                if self.is_range(row) && *value < 0.0 {
+                if sensor.measurement.is_range(row) && *value < 0.0 {
                     let reason = format!("is {value}, a negative range; a range is a distance");
                     return Err(Invalid::new(Class::Range, format!("{field}[{row}]"), reason));
                 }
-                if self.is_bearing(row) && value.abs() > 2.0 * std::f64::consts::PI {
+                if angles[index].get(row) == Some(&true) && value.abs() > 2.0 * std::f64::consts::PI {
                     let reason = format!("is {value}, a bearing outside ±2π: is it in degrees?");
                     return Err(Invalid::new(Class::Angle, format!("{field}[{row}]"), reason));
                 }
@@ -245,14 +305,14 @@ fn check_count(field: &str, found: usize, most: usize) -> Result<(), Invalid> {
     Err(Invalid::new(Class::Shape, field, reason))
 }
 
-fn check_size(dimensions: Dimensions) -> Result<(), Invalid> {
+fn check_size(dimensions: &Dimensions) -> Result<(), Invalid> {
     let numbers = dimensions.numbers();
     if numbers <= MOST_NUMBERS {
         return Ok(());
     }
     let reason = format!(
         "has {} steps, and their trace {numbers} numbers; this program is built for at most {MOST_NUMBERS}",
-        dimensions.steps
+        dimensions.steps()
     );
     Err(Invalid::new(Class::Shape, "problem.measurements", reason))
 }
