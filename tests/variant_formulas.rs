@@ -10,6 +10,7 @@ use immaculate::filter::fixed_gain::FixedGain;
 use immaculate::filter::{Filter, Update};
 use immaculate::gaussian::Gaussian;
 use immaculate::imm::{Equations, Initial, Interaction, Problem, Quantity};
+use immaculate::model::function::Function;
 use immaculate::model::motion::{Mode, Motion};
 use immaculate::model::{Conversion, PolarComponent, Sensor};
 use immaculate::oracle::run::Triangle;
@@ -55,6 +56,21 @@ fn what_is_expected_of_a_measurement_is_its_formula() {
 #[test]
 fn range_and_bearing_are_their_formulas() {
     holds(&polar(), 2, POLAR);
+}
+
+#[test]
+fn jacobians_and_what_they_are_taken_for_are_their_formulas() {
+    holds(&curving(), 2, JACOBIANS);
+}
+
+#[test]
+fn steps_that_differ_are_their_formulas() {
+    holds(&changing(), 2, STEPS);
+}
+
+#[test]
+fn headings_are_averaged_by_their_formulas() {
+    holds(&heading(), 2, HEADINGS);
 }
 
 #[test]
@@ -490,6 +506,68 @@ impl<'a> At<'a> {
         [vector![r, 0.0], vector![-r, 0.0], vector![0.0, r], vector![0.0, -r]].map(|point| mean + root * point)
     }
 }
+
+/// f(a, b) = (a + 0.3 sin(b/10), b − 0.005 a b) of [`curving`]: its slopes.
+fn slopes(x: Vector2<f64>) -> Matrix2<f64> {
+    matrix![1.0, 0.03 * (x[1] / 10.0).cos(); -0.005 * x[1], 1.0 - 0.005 * x[0]]
+}
+
+/// The slopes of range and bearing, x being the second entry of the state and y the first.
+fn polar_slopes(state: Vector2<f64>) -> Matrix2<f64> {
+    let (x, y) = (state[1] - SENSOR[0], state[0] - SENSOR[1]);
+    let square = x * x + y * y;
+    matrix![y / square.sqrt(), x / square.sqrt(); x / square, -y / square]
+}
+
+#[rustfmt::skip]
+const JACOBIANS: &[Row] = &[
+    ("motion-jacobian-transposed", Q::MotionJacobian, |at, j| rows(slopes(at.x0(j)).transpose())),
+    ("motion-jacobian-at-the-prediction", Q::MotionJacobian, |at, j| rows(slopes(at.xp(j)))),
+    ("motion-jacobian-at-the-own-estimate", Q::MotionJacobian, |at, j| rows(slopes(at.xb(j)))),
+    ("motion-jacobian-last-column-omitted", Q::MotionJacobian, |at, j| {
+        let f = slopes(at.x0(j));
+        rows(matrix![f[(0, 0)], 0.0; f[(1, 0)], f[(1, 1)]])
+    }),
+    ("motion-by-jacobian", Q::PredictedMean, |at, j| rows(slopes(at.x0(j)) * at.x0(j))),
+    ("measurement-jacobian-at-the-mixed-mean", Q::MeasurementJacobian, |at, j| rows(polar_slopes(at.x0(j)))),
+    ("measurement-jacobian-of-the-step-before", Q::MeasurementJacobian, |at, j| rows(at.before().m(Q::MeasurementJacobian, j))),
+    ("bearing-jacobian-negated", Q::MeasurementJacobian, |at, j| rows(matrix![1.0, 0.0; 0.0, -1.0] * polar_slopes(at.xp(j)))),
+    ("bearing-jacobian-in-degrees", Q::MeasurementJacobian, |at, j| {
+        rows(matrix![1.0, 0.0; 0.0, 180.0 / PI] * polar_slopes(at.xp(j)))
+    }),
+    ("measurement-by-jacobian", Q::PredictedMeasurement, |at, j| rows(polar_slopes(at.xp(j)) * at.xp(j))),
+];
+
+/// In step 2 of [`changing`] F is 1.1 times, Q 1.5 times and R 1.3 times that of step 1.
+#[rustfmt::skip]
+const STEPS: &[Row] = &[
+    ("motion-of-the-first-step", Q::PredictedMean, |at, j| rows(at.f(j) * at.x0(j))),
+    ("process-noise-of-the-first-step", Q::PredictedCovariance, |at, j| {
+        let f = at.f(j) * 1.1;
+        rows(f * at.p0(j) * f.transpose() + at.q(j))
+    }),
+    ("measurement-noise-of-the-first-step", Q::InnovationCovariance, |at, j| {
+        rows(at.h() * at.pp(j) * at.h().transpose() + at.r())
+    }),
+];
+
+/// Σᵢ μᵢ∣ⱼ x̂ⁱ as numbers.
+fn mixed_as_numbers(at: At, j: usize) -> Vec<f64> {
+    rows((0..3).map(|i| at.xb(i) * at.mix(j, i)).sum::<Vector2<f64>>())
+}
+
+#[rustfmt::skip]
+const HEADINGS: &[Row] = &[
+    ("state-angles-as-numbers", Q::MixedMean, mixed_as_numbers),
+    ("mixed-angles-as-numbers", Q::MixedMean, mixed_as_numbers),
+    ("combined-angles-as-numbers", Q::CombinedMean, |at, _| {
+        rows((0..3).map(|i| at.x(i) * at.mun(i)).sum::<Vector2<f64>>())
+    }),
+    ("state-angle-mean-vector", Q::MixedMean, |at, j| {
+        let sum = |of: fn(f64) -> f64| (0..3).map(|i| at.mix(j, i) * of(at.xb(i)[1])).sum::<f64>();
+        vec![mixed_as_numbers(at, j)[0], sum(f64::sin).atan2(sum(f64::cos))]
+    }),
+];
 
 const THIRD: f64 = 1.0 / 3.0;
 
@@ -1223,6 +1301,7 @@ fn kalman() -> Scene {
             measurement_noise: dmatrix![2.0, 0.5; 0.5, 1.5],
             filters: vec![Filter::kalman()],
             interaction: Interaction::Imm,
+            angles: vec![],
         },
         equations: Equations::standard(),
         initial: Initial {
@@ -1290,6 +1369,49 @@ fn polar() -> Scene {
     scene
 }
 
+/// Extended filters of range and bearing, which all move along one curve.
+fn curving() -> Scene {
+    let mut scene = polar();
+    scene.problem.filters = vec![Filter::extended()];
+    let curve = [("a", "a + 0.3*sin(b/10)"), ("b", "b - 0.005*a*b")];
+    let function = Function::of_formulas(&["a", "b"], &[], &[], &[], &curve).unwrap();
+    for mode in &mut scene.problem.modes {
+        mode.motion = Motion::Function {
+            function: function.clone().into(),
+            given: Vec::new(),
+        };
+    }
+    scene
+}
+
+/// Kalman filters whose second step is another.
+fn changing() -> Scene {
+    let mut scene = kalman();
+    let mut problem = scene.problem.clone();
+    for mode in &mut problem.modes {
+        *mode.motion.matrix_mut().unwrap() *= 1.1;
+        mode.noise *= 1.5;
+    }
+    problem.measurement_noise *= 1.3;
+    scene.changes.insert(2, problem);
+    scene
+}
+
+/// The second entry of the state is a heading, near ±π in every mode and hardly measured.
+fn heading() -> Scene {
+    let mut scene = kalman();
+    scene.problem.angles = vec![1];
+    scene.problem.measurement_noise *= 1e4;
+    for (mode, estimate) in scene.problem.modes.iter_mut().zip(&mut scene.initial.modes) {
+        *mode.motion.matrix_mut().unwrap() = dmatrix![1.1, 0.3; 0.0, 1.0];
+        estimate.covariance *= 0.01;
+    }
+    for (estimate, heading) in scene.initial.modes.iter_mut().zip([2.9, -2.2, 2.8]) {
+        estimate.mean[1] = heading;
+    }
+    scene
+}
+
 /// The same converted to a position.
 fn converted(conversion: Conversion) -> Scene {
     let mut scene = polar();
@@ -1325,6 +1447,7 @@ fn scalar() -> Scene {
             }],
             filters: vec![Filter::kalman()],
             interaction: Interaction::Imm,
+            angles: vec![],
             chain: vec![vec![1.0]],
             sensor: Sensor::Linear(dmatrix![0.8]),
             measurement_noise: dmatrix![2.0],

@@ -186,7 +186,7 @@ fn a_variant_changes_nothing_where_it_does_not_apply() {
             left_alone.insert(format!("{:?}", variant.applies));
         }
     }
-    assert_eq!(left_alone.len(), 14, "each limit was met: {left_alone:?}");
+    assert_eq!(left_alone.len(), 15, "each limit was met: {left_alone:?}");
 }
 
 /// Exact, by hand: the words for where a variant can make a difference, in filters of each kind.
@@ -576,6 +576,8 @@ fn scenes() -> Vec<Scene> {
         ("square", square(2)),
         ("extended", extended()),
         ("changing steps", changing()),
+        ("heading", heading(Filter::extended())),
+        ("heading with points", heading(points(RULE))),
         ("scalar", generic(1, 2, Sensor::Linear(dmatrix![0.8]), Filter::kalman())),
     ];
     scenes.map(|(name, setup)| Scene { name, setup }).into()
@@ -668,6 +670,38 @@ fn polar(rule: &str) -> Setup<f64> {
     setup
 }
 
+/// A heading on both sides of ±π in the state [x, y, speed, heading], and a position that is measured.
+fn heading(filter: Filter<f64, Dyn, Dyn>) -> Setup<f64> {
+    let mut h = DMatrix::zeros(2, 4);
+    h[(0, 0)] = 1.0;
+    h[(1, 1)] = 1.0;
+    let mut setup = generic(4, 3, Sensor::Linear(h), filter);
+    for (j, mode) in setup.problem.modes.iter_mut().enumerate() {
+        // Straight on against the x-axis, whatever the heading, which turns by itself: points of a linear motion have the means of matrices.
+        let Motion::Linear(f) = &mut mode.motion else {
+            panic!("a matrix")
+        };
+        f.row_mut(3).fill(0.0);
+        f[(3, 3)] = 1.0;
+        mode.motion = Motion::Affine {
+            matrix: f.clone(),
+            offset: dvector![-4.0, 0.0, 0.0, 0.3 * index(j)],
+        };
+        mode.noise *= 0.05;
+    }
+    setup.problem.angles = vec![3];
+    for (j, estimate) in setup.initial.modes.iter_mut().enumerate() {
+        estimate.mean = dvector![10.0 + index(j), -3.0, 4.0 + 0.5 * index(j), [3.0, -3.1, -2.9][j]];
+        estimate.covariance *= 0.02; // no point is half a turn from its mean
+    }
+    for (k, z) in setup.measurements.iter_mut().enumerate() {
+        *z = Some(dvector![6.5 - 3.9 * index(k), -3.4 + value(300 + k)]);
+    }
+    setup.measurements[3] = None;
+    assert_eq!(setup.problem.check(&setup.initial).err(), None);
+    setup
+}
+
 /// Kalman filters whose steps differ.
 fn changing() -> Setup<f64> {
     let mut setup = linear(3);
@@ -733,6 +767,7 @@ fn generic(n: usize, modes: usize, sensor: Sensor<f64, Dyn, Dyn>, filter: Filter
         modes: (0..modes).map(mode).collect(),
         filters: vec![filter],
         interaction: Interaction::Imm,
+        angles: vec![],
         chain: chain.collect(),
         sensor,
         measurement_noise: covariance(m, 500, 3.0),
@@ -802,6 +837,7 @@ fn on_enclosures(setup: &Setup<f64>) -> Setup<Enclosure> {
             modes: modes.collect(),
             filters: problem.filters.iter().map(filter_on_enclosures).collect(),
             interaction: problem.interaction,
+            angles: problem.angles.clone(),
             chain: problem.chain.iter().map(|row| list(row)).collect(),
             sensor,
             measurement_noise: problem.measurement_noise.map(Enclosure::exact),

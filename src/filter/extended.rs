@@ -29,8 +29,8 @@ use nalgebra::{Dim, OMatrix, OVector};
 /// | f      | `motion` |       | the motion of the mode                                    |
 /// | x̂⁰     | `at`     | N     | the mixed mean, from which the mode's prediction starts   |
 ///
-/// Why: f(x̂⁰ + δ) = f(x̂⁰) + F δ + …, so that to first order the error δ of the estimate becomes F δ. Evaluated anywhere else, F belongs to
-/// another error. A matrix is its own Jacobian, wherever it is evaluated.
+/// Why: f(x̂⁰ + δ) = f(x̂⁰) + F δ + …, so that to first order the error δ of the estimate becomes F δ. Evaluated anywhere else, F belongs
+/// to another error. A matrix is its own Jacobian, wherever it is evaluated.
 ///
 /// Example: a heading ψ that turns a speed of 2 into steps along x; at ψ = 0 it moves x to second order only.
 ///
@@ -46,7 +46,8 @@ use nalgebra::{Dim, OMatrix, OVector};
 /// # Ok::<(), immaculate::model::function::InvalidFunction>(())
 /// ```
 ///
-/// Evidence: `a_jacobian_is_the_limit_of_difference_quotients` (symbolic), `an_extended_filter_of_matrices_is_the_kalman_filter` (extended).
+/// Evidence: `a_jacobian_is_the_limit_of_difference_quotients` (symbolic),
+/// `an_extended_filter_of_matrices_is_the_kalman_filter` (extended).
 pub fn motion_jacobian<T: Real, N: Dim>(motion: &Motion<T, N>, at: &OVector<T, N>) -> OMatrix<T, N, N>
 where
     Shapes: Holds<N>,
@@ -83,7 +84,8 @@ where
 /// use nalgebra::{U2, matrix, vector};
 ///
 /// let radar = Sensor::<f64, U2, U2>::Polar { components: vec![Range, Bearing], position: [0, 1], location: [0.0, 0.0] };
-/// assert_eq!(measurement_jacobian(&radar, &vector![3.0, 4.0]), matrix![0.6, 0.8; -0.16, 0.12]);
+/// let slopes = measurement_jacobian(&radar, &vector![3.0, 4.0]);
+/// assert!((slopes - matrix![0.6, 0.8; -0.16, 0.12]).norm() < 1e-15);
 /// ```
 ///
 /// Evidence: `the_slopes_of_range_and_bearing_are_those_of_their_formulas` (extended).

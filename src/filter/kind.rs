@@ -98,6 +98,7 @@ where
     ///     modes: vec![Mode { name: "still".into(), motion: Motion::Linear(Matrix2::identity()), noise: Matrix2::zeros() }],
     ///     filters: vec![Filter::extended()],
     ///     interaction: Interaction::Imm,
+    ///     angles: vec![],
     ///     chain: vec![vec![1.0]],
     ///     sensor: Sensor::Polar { components: vec![PolarComponent::Range], position: [0, 1], location: [0.0, 0.0] },
     ///     measurement_noise: matrix![75.0],
@@ -107,8 +108,8 @@ where
     /// let mut filter = Imm::new(problem, &initial)?;
     /// let step = filter.step(Some(&vector![9.0]))?;
     /// // H = [3/5, 4/5], S = 25 + 75, W = 25 Hᵀ / 100, and 9 m are 4 m more than the expected 5 m.
-    /// assert_eq!(step.measurement_jacobians[0], Some(matrix![0.6, 0.8]));
-    /// assert!((step.updated[0].mean - vector![3.6, 4.8]).norm() < 1e-15);
+    /// assert!((step.gains[0] - vector![0.15, 0.2]).norm() < 1e-15);
+    /// assert!((step.updated[0].mean - vector![3.6, 4.8]).norm() < 1e-14);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
@@ -148,6 +149,7 @@ where
     ///     modes: vec![Mode { name: "still".into(), motion: Motion::Linear(Matrix2::identity()), noise: Matrix2::zeros() }],
     ///     filters: vec![Filter::converted(Conversion::Standard)],
     ///     interaction: Interaction::Imm,
+    ///     angles: vec![],
     ///     chain: vec![vec![1.0]],
     ///     sensor: Sensor::Polar {
     ///         components: vec![PolarComponent::Range, PolarComponent::Bearing],
@@ -204,6 +206,7 @@ where
     ///     measurement_noise: matrix![1.0],
     ///     filters: vec![Filter::given(FixedGain { gain: matrix![0.5], innovation_covariance: matrix![2.0] }); 2],
     ///     interaction: Interaction::Imm,
+    ///     angles: vec![],
     /// };
     /// let at = |x| Gaussian { mean: vector![x], covariance: matrix![0.0] };
     /// let initial = Initial { modes: vec![at(0.0), at(4.0)], mode_probabilities: vec![0.5, 0.5] };

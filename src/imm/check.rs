@@ -37,6 +37,7 @@ where
     ///     measurement_noise: matrix![2.0],
     ///     filters: vec![Filter::kalman()],
     ///     interaction: Interaction::Imm,
+    ///     angles: vec![],
     /// };
     /// let initial = Initial {
     ///     modes: vec![Gaussian { mean: vector![0.0], covariance: matrix![1.0] }],
@@ -70,6 +71,7 @@ where
         }
         check_covariance(&self.measurement_noise, "R".into(), "liu2017 (19)")?;
         self.check_sensor()?;
+        self.check_angles()?;
         self.check_filters()?;
         check_length("initial.modes", estimates.modes.len(), self.modes.len(), "zhu2016 (55)")
     }
@@ -153,6 +155,17 @@ where
             }
             Sensor::Function { given, .. } => check_given_values(given, "measurement"),
         }
+    }
+
+    /// Angles are entries of the state, each named once.
+    fn check_angles(&self) -> Result<(), InvalidProblem> {
+        let dimension = self.n().value();
+        for (place, &index) in self.angles.iter().enumerate() {
+            if index >= dimension || self.angles[..place].contains(&index) {
+                return Err(InvalidProblem::Angle { index, dimension });
+            }
+        }
+        Ok(())
     }
 
     fn check_filters(&self) -> Result<(), InvalidProblem> {

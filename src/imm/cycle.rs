@@ -34,6 +34,7 @@ use nalgebra::{Dim, OVector};
 ///     measurement_noise: matrix![2.0],
 ///     filters: vec![Filter::kalman()],
 ///     interaction: Interaction::Imm,
+///     angles: vec![],
 /// };
 /// let initial = Initial {
 ///     modes: vec![Gaussian { mean: vector![0.0], covariance: matrix![1.0] }],
@@ -145,6 +146,7 @@ where
     ///     modes: vec![Mode { name: "walk".into(), motion: Motion::Linear(matrix![1.0]), noise: matrix![1.0] }],
     ///     filters: vec![Filter::kalman()],
     ///     interaction: Interaction::Imm,
+    ///     angles: vec![],
     ///     chain: vec![vec![1.0]],
     ///     sensor: Sensor::Linear(matrix![1.0]),
     ///     measurement_noise: matrix![2.0],
@@ -283,13 +285,9 @@ where
         now.predicted[j].mean = (e.predicted_mean)(problem, previous, now, j);
         observer.computed(Quantity::PredictedMean, j, now);
         let jacobian = (e.motion_jacobian)(problem, previous, now, j);
-        if let Some(jacobian) = &jacobian {
-            check_slopes(problem, now, j, Quantity::MotionJacobian, all_finite(jacobian))?;
-        }
+        let has_slopes = jacobian.as_ref().map(all_finite);
         now.motion_jacobians.push(jacobian);
-        if now.motion_jacobians[j].is_some() {
-            observer.computed(Quantity::MotionJacobian, j, now);
-        }
+        linearised(problem, now, Quantity::MotionJacobian, j, has_slopes, observer)?;
         if problem.has_covariances() {
             now.predicted[j].covariance = (e.predicted_covariance)(problem, previous, now, j);
             observer.computed(Quantity::PredictedCovariance, j, now);
@@ -443,13 +441,9 @@ where
     now.innovations.push(innovation);
     observer.computed(Quantity::Innovation, j, now);
     let jacobian = (e.measurement_jacobian)(problem, previous, now, j);
-    if let Some(jacobian) = &jacobian {
-        check_slopes(problem, now, j, Quantity::MeasurementJacobian, all_finite(jacobian))?;
-    }
+    let has_slopes = jacobian.as_ref().map(all_finite);
     now.measurement_jacobians.push(jacobian);
-    if now.measurement_jacobians[j].is_some() {
-        observer.computed(Quantity::MeasurementJacobian, j, now);
-    }
+    linearised(problem, now, Quantity::MeasurementJacobian, j, has_slopes, observer)?;
     let covariance = (e.innovation_covariance)(problem, previous, now, j);
     now.innovation_covariances.push(covariance);
     observer.computed(Quantity::InnovationCovariance, j, now);
@@ -474,19 +468,26 @@ where
     Ok(())
 }
 
-/// A function has a slope where it is linearised.
-fn check_slopes<T: Real, N: Dim, M: Dim>(
+/// Tells the observer of a Jacobian, if there is one; `has_slopes` says whether its entries are finite.
+///
+/// # Errors
+///
+/// [`Failure`] where a function has no slope.
+fn linearised<T: Real, N: Dim, M: Dim>(
     problem: &Problem<T, N, M>,
-    now: &Step<T, N, M>,
-    j: usize,
+    now: &mut Step<T, N, M>,
     value: Quantity,
-    are_finite: bool,
+    j: usize,
+    has_slopes: Option<bool>,
+    observer: &mut impl Observer<T, N, M>,
 ) -> Result<(), Failure>
 where
     Shapes: Holds<N, M>,
 {
-    if are_finite {
-        return Ok(());
+    match has_slopes {
+        None => {}
+        Some(true) => observer.computed(value, j, now),
+        Some(false) => return Err(failure(problem, now, Some(j), value.name(), Cause::NoSlope)),
     }
-    Err(failure(problem, now, Some(j), value.name(), Cause::NoSlope))
+    Ok(())
 }

@@ -14,6 +14,7 @@
 //! };
 //! ```
 
+use super::angles::{estimates_near, points_near, wrapped};
 use super::probability;
 use super::problem::Interaction;
 use super::{Problem, Step};
@@ -136,10 +137,14 @@ where
                     (0..problem.modes.len()).map(own).collect()
                 }
             },
-            mixed_mean: |_, previous, now, j| mixture_mean(&now.mixing_probabilities[j], &previous.updated),
-            mixed_covariance: |_, previous, now, j| {
+            mixed_mean: |problem, previous, now, j| {
+                let estimates = estimates_near(problem, &previous.updated, &previous.updated[0].mean);
+                mixture_mean(&now.mixing_probabilities[j], &estimates)
+            },
+            mixed_covariance: |problem, previous, now, j| {
                 let mean = &now.mixed[j].mean;
-                mixture_covariance(&now.mixing_probabilities[j], &previous.updated, mean)
+                let estimates = estimates_near(problem, &previous.updated, mean);
+                mixture_covariance(&now.mixing_probabilities[j], &estimates, mean)
             },
 
             mixed_points: |problem, _, now, j| match &problem.filter(j).predict {
@@ -158,7 +163,14 @@ where
                     Motion::Linear(f) => kalman::predicted_mean(f, &now.mixed[j].mean),
                     motion => motion.of(&now.mixed[j].mean),
                 },
-                Transform::Points(rule) => cubature::weighted_mean(&rule.weights, &now.propagated_points[j]),
+                Transform::Points(rule) if problem.angles.is_empty() => {
+                    cubature::weighted_mean(&rule.weights, &now.propagated_points[j])
+                }
+                Transform::Points(rule) => {
+                    let centre = problem.modes[j].motion.of(&now.mixed[j].mean);
+                    let points = points_near(problem, &now.propagated_points[j], &centre);
+                    cubature::weighted_mean(&rule.weights, &points)
+                }
             },
             motion_jacobian: |problem, _, now, j| match &problem.filter(j).predict {
                 Transform::Linearised => Some(extended::motion_jacobian(&problem.modes[j].motion, &now.mixed[j].mean)),
@@ -172,15 +184,20 @@ where
                         kalman::predicted_covariance(&f, &now.mixed[j].covariance, q)
                     }
                     Transform::Points(rule) => {
-                        let (points, mean) = (&now.propagated_points[j], &now.predicted[j].mean);
-                        cubature::weighted_covariance(&rule.covariance_weights, points, mean, q)
+                        let mean = &now.predicted[j].mean;
+                        let points = points_near(problem, &now.propagated_points[j], mean);
+                        cubature::weighted_covariance(&rule.covariance_weights, &points, mean, q)
                     }
                 }
             },
-            combined_prediction_mean: |_, _, now, _| mixture_mean(&now.predicted_mode_probabilities, &now.predicted),
-            combined_prediction_covariance: |_, _, now, _| {
+            combined_prediction_mean: |problem, _, now, _| {
+                let estimates = estimates_near(problem, &now.predicted, &now.predicted[0].mean);
+                mixture_mean(&now.predicted_mode_probabilities, &estimates)
+            },
+            combined_prediction_covariance: |problem, _, now, _| {
                 let mean = &now.combined_prediction.mean;
-                mixture_covariance(&now.predicted_mode_probabilities, &now.predicted, mean)
+                let estimates = estimates_near(problem, &now.predicted, mean);
+                mixture_covariance(&now.predicted_mode_probabilities, &estimates, mean)
             },
 
             converted_measurement: |problem, z, _, _| {
@@ -249,8 +266,9 @@ where
                 check_positive_definite(&factors)?;
                 Ok(update::gain(&now.cross_covariances[j], &factors))
             },
-            updated_mean: |_, _, now, j| {
-                update::updated_mean(&now.predicted[j].mean, &now.gains[j], &now.innovations[j])
+            updated_mean: |problem, _, now, j| {
+                let mean = update::updated_mean(&now.predicted[j].mean, &now.gains[j], &now.innovations[j]);
+                wrapped(&problem.angles, mean)
             },
             updated_covariance: |_, _, now, j| {
                 let innovation_covariance = &now.innovation_covariances[j];
@@ -259,7 +277,7 @@ where
             },
             log_likelihood: |_, _, now, j| log_density(&now.innovations[j], &ldl(&now.innovation_covariances[j])),
 
-            undetected_mean: |_, _, now, j| now.predicted[j].mean.clone(),
+            undetected_mean: |problem, _, now, j| wrapped(&problem.angles, now.predicted[j].mean.clone()),
             undetected_covariance: |_, _, now, j| now.predicted[j].covariance.clone(),
             undetected_log_likelihood: |_, _, _, _| None,
             undetected_mode_probability: |_, _, now, j| now.predicted_mode_probabilities[j].clone(),
@@ -277,9 +295,14 @@ where
                 let predicted = &now.predicted_mode_probabilities[j];
                 probability::mode_probability(&now.relative_likelihoods[j], predicted, &now.evidence)
             },
-            combined_mean: |_, _, now, _| mixture_mean(&now.mode_probabilities, &now.updated),
-            combined_covariance: |_, _, now, _| {
-                mixture_covariance(&now.mode_probabilities, &now.updated, &now.combined.mean)
+            combined_mean: |problem, _, now, _| {
+                let estimates = estimates_near(problem, &now.updated, &now.updated[0].mean);
+                mixture_mean(&now.mode_probabilities, &estimates)
+            },
+            combined_covariance: |problem, _, now, _| {
+                let mean = &now.combined.mean;
+                let estimates = estimates_near(problem, &now.updated, mean);
+                mixture_covariance(&now.mode_probabilities, &estimates, mean)
             },
         }
     }
@@ -301,6 +324,7 @@ where
     ///     modes: vec![Mode { name: "still".into(), motion: Motion::Linear(Matrix2::identity()), noise: Matrix2::zeros() }],
     ///     filters: vec![Filter::converted(Conversion::Standard)],
     ///     interaction: Interaction::Imm,
+    ///     angles: vec![],
     ///     chain: vec![vec![1.0]],
     ///     sensor: Sensor::Polar {
     ///         components: vec![PolarComponent::Range, PolarComponent::Bearing],
@@ -339,8 +363,9 @@ where
                     (Self::standard().predicted_covariance)(problem, previous, now, j)
                 }
                 Transform::Points(rule) => {
-                    let (points, mean) = (&now.propagated_points[j], &now.predicted[j].mean);
-                    raw::raw_covariance(&rule.covariance_weights, points, mean, &problem.modes[j].noise)
+                    let mean = &now.predicted[j].mean;
+                    let points = points_near(problem, &now.propagated_points[j], mean);
+                    raw::raw_covariance(&rule.covariance_weights, &points, mean, &problem.modes[j].noise)
                 }
             },
             innovation_covariance: |problem, previous, now, j| match &problem.filter(j).update {
@@ -365,7 +390,7 @@ where
     }
 }
 
-/// F as the filter of mode j uses it: the Jacobian of its motion where it linearises, else the matrix of the motion.
+/// F as the filter of mode j uses it, or would: the matrix of its motion, or the Jacobian of a function.
 pub(crate) fn motion_matrix<'a, T: Real, N: Dim, M: Dim>(
     problem: &'a Problem<T, N, M>,
     now: &'a Step<T, N, M>,
@@ -376,7 +401,10 @@ where
 {
     match now.motion_jacobians.get(j) {
         Some(Some(jacobian)) => Cow::Borrowed(jacobian),
-        _ => problem.modes[j].motion.matrix(),
+        _ => match &problem.modes[j].motion {
+            motion @ Motion::Function { .. } => Cow::Owned(extended::motion_jacobian(motion, &now.mixed[j].mean)),
+            motion => motion.matrix(),
+        },
     }
 }
 

@@ -140,6 +140,14 @@ pub enum InvalidProblem {
         /// The number of covariance weights.
         covariance_weights: usize,
     },
+    /// An angle is not an entry of the state, or is named twice.
+    #[error("`angles` names entry {index} of a state of {dimension}; it is not there, or named twice")]
+    Angle {
+        /// The entry, counted from 0.
+        index: usize,
+        /// The dimension of the state.
+        dimension: usize,
+    },
     /// The position of a polar measurement is not in the state.
     #[error("`measurement.position` names entry {index} of a state of {dimension} (liu2017 (31))")]
     Position {

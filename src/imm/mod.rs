@@ -19,14 +19,17 @@
 //! - [`record`]: every value of one step, and the table of those that are traced;
 //! - [`equations`]: the table that says which equation gives each value; a variant of the filter exchanges entries of it;
 //! - [`cycle`]: the one wiring that runs a table;
+//! - [`angles`]: what is averaged where an entry of the state is an angle;
 //! - [`unequal`]: what is mixed where one mode has an entry of the state that another lacks;
 //! - [`plain_bearing`]: bearings that are never wrapped;
 //! - [`printed`]: what the papers print wrongly.
 //!
 //! Example: a whole step with two modes, value by value, is on the [front page](crate); [`Imm`] has one with one mode.
 
+pub mod angles;
 mod check;
 pub mod cycle;
+mod entries;
 pub mod equations;
 pub mod failure;
 pub mod invalid;

@@ -32,6 +32,7 @@ use nalgebra::Dim;
 ///     measurement_noise: matrix![2.0],
 ///     filters: vec![Filter::kalman()],
 ///     interaction: Interaction::Imm,
+///     angles: vec![],
 /// };
 /// let initial = Initial {
 ///     modes: vec![Gaussian { mean: vector![0.0], covariance: matrix![1.0] }],

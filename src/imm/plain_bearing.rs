@@ -34,6 +34,7 @@ where
     ///     measurement_noise: matrix![0.01],
     ///     filters: vec![Filter::points("cubature-3".parse::<RuleName>()?.rule()?)],
     ///     interaction: Interaction::Imm,
+    ///     angles: vec![],
     /// };
     /// let start = Gaussian { mean: vector![-1.0, -1.0], covariance: Matrix2::identity() * 1e-6 };
     /// let initial = Initial { modes: vec![start], mode_probabilities: vec![1.0] };

@@ -30,6 +30,8 @@ where
     pub filters: Vec<Filter<T, N, M>>,
     /// Which estimates the filters start from.
     pub interaction: Interaction,
+    /// Which entries of the state are angles, in radians, such as a heading: [`angles`](super::angles). Most states have none.
+    pub angles: Vec<usize>,
     /// The Markov chain of the modes: `chain[i][j]` = P(mode j at k ∣ mode i at k−1); rows sum to one.
     pub chain: Vec<Vec<T>>,
     /// What the sensor sees.
@@ -82,6 +84,7 @@ pub enum Interaction {
     ///     measurement_noise: matrix![1.0],
     ///     filters: vec![Filter::given(FixedGain { gain: matrix![0.5], innovation_covariance: matrix![2.0] }); 2],
     ///     interaction: Interaction::Unmixed,
+    ///     angles: vec![],
     /// };
     /// let at = |x| Gaussian { mean: vector![x], covariance: matrix![0.0] };
     /// let initial = Initial { modes: vec![at(0.0), at(4.0)], mode_probabilities: vec![0.5, 0.5] };

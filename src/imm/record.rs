@@ -5,10 +5,10 @@
 //! is read and overwritten by name, traces, the judge and the file formats are made from these rows. The points of cubature filters are not
 //! among them: programs draw them in different orders.
 
+use super::entries::Entries;
 use crate::gaussian::Gaussian;
 use crate::matrix::{Holds, Shapes};
 use crate::number::Field;
-use nalgebra::allocator::Allocator;
 use nalgebra::{Dim, OMatrix, OVector};
 
 /// All values of step k. Lists have one entry a mode; step 0 is the initial estimate.
@@ -191,42 +191,6 @@ pub struct Row {
     pub is_of_mode: bool,
     /// What must be there for it to exist.
     pub needs: &'static [Needs],
-}
-
-/// Numbers that stand in one piece, by columns: a scalar, a list, a matrix, or nothing.
-trait Entries<T> {
-    fn entries(&self) -> &[T];
-    fn entries_mut(&mut self) -> &mut [T];
-}
-
-impl<T: Field> Entries<T> for T {
-    fn entries(&self) -> &[T] {
-        std::slice::from_ref(self)
-    }
-    fn entries_mut(&mut self) -> &mut [T] {
-        std::slice::from_mut(self)
-    }
-}
-
-impl<T> Entries<T> for Vec<T> {
-    fn entries(&self) -> &[T] {
-        self
-    }
-    fn entries_mut(&mut self) -> &mut [T] {
-        self
-    }
-}
-
-impl<T: Field, R: Dim, C: Dim> Entries<T> for OMatrix<T, R, C>
-where
-    Shapes: Allocator<R, C>,
-{
-    fn entries(&self) -> &[T] {
-        self.as_slice()
-    }
-    fn entries_mut(&mut self) -> &mut [T] {
-        self.as_mut_slice()
-    }
 }
 
 /// The table. A row: the value, its name, its rows and columns, of each mode or of all, what it needs, its place in [`Step`], and its
@@ -460,7 +424,6 @@ impl Quantity {
             // What was measured alone. (By the convention `at-prediction` R^c is of the combined prediction instead.)
             ConvertedMeasurement | ConvertedCovariance => &[],
             Innovation => &[Now(PredictedMeasurement), Now(ConvertedMeasurement)],
-            MeasurementJacobian => &[Now(PredictedMean)],
             InnovationCovariance => &[
                 Now(PredictedMean),
                 Now(PredictedCovariance),
@@ -476,7 +439,7 @@ impl Quantity {
             ],
             Gain => &[Now(InnovationCovariance), Now(CrossCovariance)],
             UpdatedMean if has_detection => &[Now(PredictedMean), Now(Gain), Now(Innovation)],
-            UpdatedMean => &[Now(PredictedMean)],
+            MeasurementJacobian | UpdatedMean => &[Now(PredictedMean)],
             UpdatedCovariance if has_detection => &[Now(PredictedCovariance), Now(Gain), Now(InnovationCovariance)],
             UpdatedCovariance => &[Now(PredictedCovariance)],
             LogLikelihood => &[Now(Innovation), Now(InnovationCovariance)],

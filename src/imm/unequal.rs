@@ -13,6 +13,7 @@
 //! are made from such a table by [`Equations::with_index_wise_mixing`] and [`Equations::with_unbiased_mixing`]. Where no mode lacks an
 //! entry all three are the same.
 
+use super::angles::estimates_near;
 use super::{Equations, Problem, Step};
 use crate::gaussian::{Gaussian, mixture_covariance, mixture_mean};
 use crate::matrix::{Holds, Shapes, rows};
@@ -133,18 +134,20 @@ where
     estimate
 }
 
-/// The estimates of all modes as they are mixed for mode j: each with what it lacks taken from j.
+/// The estimates of all modes as they are mixed for mode j, angles in the turn of a reference: each with what it lacks taken from j.
 fn augmented_for<T: Real, N: Dim, M: Dim>(
     problem: &Problem<T, N, M>,
     previous: &Step<T, N, M>,
+    reference: &OVector<T, N>,
     j: usize,
 ) -> Vec<Gaussian<T, N>>
 where
     Shapes: Holds<N, M>,
 {
-    let estimates = previous.updated.iter().zip(&problem.modes);
-    estimates
-        .map(|(estimate, mode)| augmented(estimate, &previous.updated[j], mode))
+    let estimates = estimates_near(problem, &previous.updated, reference);
+    let with_modes = estimates.iter().zip(&problem.modes);
+    with_modes
+        .map(|(estimate, mode)| augmented(estimate, &estimates[j], mode))
         .collect()
 }
 
@@ -158,15 +161,18 @@ where
         Self {
             mixed_covariance: |problem, previous, now, j| {
                 let (weights, mean) = (&now.mixing_probabilities[j], &now.mixed[j].mean);
-                index_wise_covariance(weights, &previous.updated, mean, &problem.modes)
+                let estimates = estimates_near(problem, &previous.updated, mean);
+                index_wise_covariance(weights, &estimates, mean, &problem.modes)
             },
             combined_prediction_covariance: |problem, _, now, _| {
                 let (weights, mean) = (&now.predicted_mode_probabilities, &now.combined_prediction.mean);
-                index_wise_covariance(weights, &now.predicted, mean, &problem.modes)
+                let estimates = estimates_near(problem, &now.predicted, mean);
+                index_wise_covariance(weights, &estimates, mean, &problem.modes)
             },
             combined_covariance: |problem, _, now, _| {
                 let (weights, mean) = (&now.mode_probabilities, &now.combined.mean);
-                index_wise_covariance(weights, &now.updated, mean, &problem.modes)
+                let estimates = estimates_near(problem, &now.updated, mean);
+                index_wise_covariance(weights, &estimates, mean, &problem.modes)
             },
             ..self
         }
@@ -177,10 +183,11 @@ where
     pub fn with_unbiased_mixing(self) -> Self {
         Self {
             mixed_mean: |problem, previous, now, j| {
-                mixture_mean(&now.mixing_probabilities[j], &augmented_for(problem, previous, j))
+                let estimates = augmented_for(problem, previous, &previous.updated[0].mean, j);
+                mixture_mean(&now.mixing_probabilities[j], &estimates)
             },
             mixed_covariance: |problem, previous, now, j| {
-                let estimates = augmented_for(problem, previous, j);
+                let estimates = augmented_for(problem, previous, &now.mixed[j].mean, j);
                 mixture_covariance(&now.mixing_probabilities[j], &estimates, &now.mixed[j].mean)
             },
             ..self

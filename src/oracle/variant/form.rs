@@ -3,10 +3,14 @@
 //! After this file the reader knows how else a right filter may be written; what differs is rounding alone.
 
 use super::super::setup::Setup;
-use super::{draws_points, is_linear, measurement_matrix, motion_matrix, noise, sum_of_covariance_weights, weights};
+use super::{
+    draws_no_points, draws_points, is_linear, measurement_matrix, motion_matrix, noise, sum_of_covariance_weights,
+    weights,
+};
 use crate::filter::{cubature, kalman};
 use crate::gaussian::{Gaussian, mixture_covariance, mixture_mean};
 use crate::imm::Equations;
+use crate::imm::angles::{estimates_near, points_near, wrapped};
 use crate::imm::{Problem, Step};
 use crate::matrix::{check_positive_definite, cholesky, ldl, mirrored, solve};
 use crate::number::Real;
@@ -35,7 +39,8 @@ fn of_mean<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
             let before = inverse(&now.predicted[j].covariance);
             let mean = &now.predicted[j].mean;
             let measurement = &now.innovations[j] + &h * mean;
-            inverse(&(&before + &of_measurement * &h)) * (before * mean + of_measurement * measurement)
+            let updated = inverse(&(&before + &of_measurement * &h)) * (before * mean + of_measurement * measurement);
+            wrapped(&problem.angles, updated)
         };
     }
     true
@@ -43,7 +48,8 @@ fn of_mean<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
 
 /// The updated covariance.
 fn of_update<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
-    let (points, has_information) = (draws_points(setup), has_information(setup));
+    let (points, no_points, has_information) =
+        (!draws_no_points(setup), draws_no_points(setup), has_information(setup));
     let entry = &mut setup.equations.updated_covariance;
     match id {
         // (I − W H) P⁻ (I − W H)ᵀ + W R Wᵀ; with points P⁻ − W Cᵀ − C Wᵀ + W S Wᵀ
@@ -67,7 +73,7 @@ fn of_update<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
         }
         // (I − W H) P⁻
         "update-by-identity-minus-gain" => {
-            if !points {
+            if no_points {
                 *entry = |problem, _, now, j| rest(problem, now, j) * &now.predicted[j].covariance;
             }
         }
@@ -97,7 +103,7 @@ fn of_update<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
 /// Whether there is an information form: no points, and no entry of the state that a mode knows exactly, whose covariance has no inverse.
 fn has_information<T: Real>(setup: &Setup<T>) -> bool {
     let modes = &setup.problem.modes;
-    !draws_points(setup)
+    draws_no_points(setup)
         && !modes
             .iter()
             .any(|mode| (0..setup.problem.n().0).any(|entry| mode.lacks(entry)))
@@ -153,26 +159,39 @@ fn of_moments<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
         }
         // Σᵢ wᵢ (Pⁱ + x̂ⁱ x̂ⁱᵀ) − x̂ x̂ᵀ
         "mixture-by-raw-moments" => {
-            equations.mixed_covariance =
-                |_, previous, now, j| raw_mixture(&now.mixing_probabilities[j], &previous.updated, &now.mixed[j].mean);
-            equations.combined_covariance =
-                |_, _, now, _| raw_mixture(&now.mode_probabilities, &now.updated, &now.combined.mean);
+            equations.mixed_covariance = |problem, previous, now, j| {
+                let mean = &now.mixed[j].mean;
+                let estimates = estimates_near(problem, &previous.updated, mean);
+                raw_mixture(&now.mixing_probabilities[j], &estimates, mean)
+            };
+            equations.combined_covariance = |problem, _, now, _| {
+                let mean = &now.combined.mean;
+                raw_mixture(
+                    &now.mode_probabilities,
+                    &estimates_near(problem, &now.updated, mean),
+                    mean,
+                )
+            };
         }
         // the last term first
         "summation-reversed" => {
-            equations.mixed_mean = |_, previous, now, j| {
-                let (weights, estimates) = (reversed(&now.mixing_probabilities[j]), reversed(&previous.updated));
-                mixture_mean(&weights, &estimates)
+            equations.mixed_mean = |problem, previous, now, j| {
+                let estimates = estimates_near(problem, &previous.updated, &previous.updated[0].mean);
+                mixture_mean(&reversed(&now.mixing_probabilities[j]), &reversed(&estimates))
             };
-            equations.mixed_covariance = |_, previous, now, j| {
-                let (weights, estimates) = (reversed(&now.mixing_probabilities[j]), reversed(&previous.updated));
-                mixture_covariance(&weights, &estimates, &now.mixed[j].mean)
+            equations.mixed_covariance = |problem, previous, now, j| {
+                let mean = &now.mixed[j].mean;
+                let estimates = estimates_near(problem, &previous.updated, mean);
+                mixture_covariance(&reversed(&now.mixing_probabilities[j]), &reversed(&estimates), mean)
             };
-            equations.combined_mean =
-                |_, _, now, _| mixture_mean(&reversed(&now.mode_probabilities), &reversed(&now.updated));
-            equations.combined_covariance = |_, _, now, _| {
-                let (weights, estimates) = (reversed(&now.mode_probabilities), reversed(&now.updated));
-                mixture_covariance(&weights, &estimates, &now.combined.mean)
+            equations.combined_mean = |problem, _, now, _| {
+                let estimates = estimates_near(problem, &now.updated, &now.updated[0].mean);
+                mixture_mean(&reversed(&now.mode_probabilities), &reversed(&estimates))
+            };
+            equations.combined_covariance = |problem, _, now, _| {
+                let mean = &now.combined.mean;
+                let estimates = estimates_near(problem, &now.updated, mean);
+                mixture_covariance(&reversed(&now.mode_probabilities), &reversed(&estimates), mean)
             };
             if points {
                 reverse_points(equations);
@@ -185,12 +204,16 @@ fn of_moments<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
 
 /// The prediction.
 fn of_prediction<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
-    let points = draws_points(setup);
+    let no_points = draws_no_points(setup);
+    // Points of a function have moments of their own.
+    let is_linear = setup
+        .problems()
+        .all(|problem| problem.modes.iter().all(|mode| mode.motion.is_linear()));
     let equations = &mut setup.equations;
     match id {
         // F P Fᵀ + Q with the two triangles as they come
         "prediction-not-mirrored" => {
-            if !points {
+            if no_points {
                 equations.predicted_covariance = |problem, _, now, j| {
                     let mode = &problem.modes[j];
                     let f = &*motion_matrix(problem, now, j);
@@ -199,6 +222,7 @@ fn of_prediction<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
             }
         }
         // the moments of linear motion without points
+        "prediction-by-matrices" if !(is_linear || no_points) => {}
         "prediction-by-matrices" => {
             equations.predicted_mean = |problem, _, now, j| problem.modes[j].motion.of(&now.mixed[j].mean);
             equations.predicted_covariance = |problem, _, now, j| {
@@ -234,11 +258,15 @@ fn of_probability<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
 /// The sums over points in reversed order.
 fn reverse_points<T: Real>(equations: &mut Equations<T, Dyn, Dyn>) {
     equations.predicted_mean = |problem, _, now, j| {
-        cubature::weighted_mean(&reversed(weights(problem, j).0), &reversed(&now.propagated_points[j]))
+        let centre = problem.modes[j].motion.of(&now.mixed[j].mean);
+        let points = points_near(problem, &now.propagated_points[j], &centre);
+        cubature::weighted_mean(&reversed(weights(problem, j).0), &reversed(&points))
     };
     equations.predicted_covariance = |problem, _, now, j| {
-        let (weights, points) = (reversed(weights(problem, j).1), reversed(&now.propagated_points[j]));
-        cubature::weighted_covariance(&weights, &points, &now.predicted[j].mean, &problem.modes[j].noise)
+        let mean = &now.predicted[j].mean;
+        let points = points_near(problem, &now.propagated_points[j], mean);
+        let weights = reversed(weights(problem, j).1);
+        cubature::weighted_covariance(&weights, &reversed(&points), mean, &problem.modes[j].noise)
     };
 }
 

@@ -3,7 +3,7 @@
 //! After this file the reader knows how the Gaussian density of a residual is miscalculated, and of which residual.
 
 use super::super::setup::Setup;
-use super::{diagonal, difference, draws_points, measurement_matrix, noise, number, seen, used};
+use super::{diagonal, difference, draws_no_points, measurement_matrix, noise, number, seen, used};
 use crate::filter::kalman;
 use crate::gaussian::log_density;
 use crate::imm::printed::{log_density_21, log_density_57};
@@ -54,7 +54,7 @@ fn of_density<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
 
 /// The residual and the covariance after the update, given to the density.
 fn of_updated_arguments<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
-    let points = draws_points(setup);
+    let no_points = draws_no_points(setup);
     let entry = &mut setup.equations.log_likelihood;
     match id {
         // ν = z − h(x̂)
@@ -66,7 +66,7 @@ fn of_updated_arguments<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
         }
         // S = H P Hᵀ + R
         "likelihood-of-updated-covariance" => {
-            if !points {
+            if no_points {
                 *entry = |problem, _, now, j| {
                     let (h, covariance) = (measurement_matrix(problem, now, j), &now.updated[j].covariance);
                     let s = kalman::innovation_covariance(&h, covariance, noise(problem, now, j));
@@ -76,7 +76,7 @@ fn of_updated_arguments<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
         }
         // both
         "likelihood-of-updated-estimate" => {
-            if !points {
+            if no_points {
                 *entry = |problem, _, now, j| {
                     let (h, covariance) = (measurement_matrix(problem, now, j), &now.updated[j].covariance);
                     let s = kalman::innovation_covariance(&h, covariance, noise(problem, now, j));

@@ -3,7 +3,10 @@
 //! After this file the reader knows how R is lost or counted twice, and which points and means are taken for others.
 
 use super::super::setup::Setup;
-use super::{difference, draws_points, measurement_matrix, noise, seen, sum_of_covariance_weights, used, weights};
+use super::{
+    difference, draws_no_points, draws_points, measurement_matrix, noise, seen, sum_of_covariance_weights, used,
+    weights,
+};
 use crate::filter::{cubature, kalman};
 use crate::imm::{Equations, Problem, Step};
 use crate::number::Real;
@@ -42,7 +45,7 @@ fn of_predicted_measurement<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
 
 /// The innovation covariance.
 fn of_innovation_covariance<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
-    let points = draws_points(setup);
+    let (points, no_points) = (draws_points(setup), draws_no_points(setup));
     let equations = &mut setup.equations;
     match id {
         "measurement-noise-omitted" => {
@@ -68,7 +71,7 @@ fn of_innovation_covariance<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
         }
         // S = H P⁰ʲ Hᵀ + R, C = P⁰ʲ Hᵀ
         "measured-before-the-prediction" => {
-            if !points {
+            if no_points {
                 equations.innovation_covariance = |problem, _, now, j| {
                     let h = measurement_matrix(problem, now, j);
                     kalman::innovation_covariance(&h, &now.mixed[j].covariance, noise(problem, now, j))
@@ -85,7 +88,7 @@ fn of_innovation_covariance<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
 
 /// The cross-covariance.
 fn of_cross_covariance<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
-    let points = draws_points(setup);
+    let (points, no_points) = (draws_points(setup), draws_no_points(setup));
     let equations = &mut setup.equations;
     match id {
         // C = Σₛ wₛ (X*ₛ − x̂⁻)(Zₛ − ẑ)ᵀ
@@ -105,7 +108,7 @@ fn of_cross_covariance<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
         }
         // C = P⁰ʲ Hᵀ
         "cross-covariance-of-mixed-covariance" => {
-            if !points {
+            if no_points {
                 equations.cross_covariance = |problem, _, now, j| {
                     kalman::cross_covariance(&now.mixed[j].covariance, &measurement_matrix(problem, now, j))
                 };

@@ -21,6 +21,7 @@
 //! | `probability`   | mode probabilities                                                   |
 //! | `combination`   | combined estimates                                                   |
 //! | `convention`    | choices that the papers leave open                                   |
+//! | `state_angle`   | angles in the state                                                  |
 //! | `square_root`   | of these the square root of a covariance                             |
 //! | `fixed_gain`    | what is given to filters with fixed gains, and their two readings    |
 //! | `form`          | other algebra for the same exact value                               |
@@ -44,6 +45,7 @@ mod points;
 mod prediction;
 mod probability;
 mod square_root;
+mod state_angle;
 mod step;
 mod update;
 
@@ -114,6 +116,9 @@ pub enum Applies {
     UnequalDimensions,
     /// Where residuals of bearings are formed.
     Angles,
+    /// Where an entry of the state is an angle.
+    #[serde(rename = "state angles")]
+    StateAngles,
     /// Where a bearing is measured, converted or not.
     Bearings,
     /// Where a detection is missing.
@@ -138,6 +143,7 @@ impl Applies {
             Self::EmbeddedMotion => "embedded motion",
             Self::UnequalDimensions => "unequal dimensions",
             Self::Angles => "angles",
+            Self::StateAngles => "state angles",
             Self::Bearings => "bearings",
             Self::Missed => "missed",
             Self::SeveralModes => "several modes",
@@ -151,7 +157,7 @@ impl Applies {
             Self::All => true,
             Self::Points => draws_points(setup),
             Self::Conversions => problem.conversion().is_some(),
-            Self::Kalman => !draws_points(setup) && problem.has_covariances(),
+            Self::Kalman => draws_no_points(setup) && problem.has_covariances(),
             Self::Linearised => {
                 let linearises = |filter: &Filter<T, Dyn, Dyn>| {
                     filter.predict == Transform::Linearised || filter.update == Update::By(Transform::Linearised)
@@ -174,6 +180,7 @@ impl Applies {
                     |problem: &Problem<T, Dyn, Dyn>| (0..problem.m().0).any(|row| problem.sensor.is_angle(row));
                 problem.conversion().is_none() && setup.problems().any(has_angle)
             }
+            Self::StateAngles => !problem.angles.is_empty(),
             Self::Bearings => {
                 let is_bearing =
                     |sensor: &Sensor<T, Dyn, Dyn>, row| sensor.reports(row) == Some(PolarComponent::Bearing);
@@ -335,15 +342,28 @@ fn apply_once<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
         || likelihood::apply(id, setup)
         || probability::apply(id, setup)
         || combination::apply(id, setup)
+        || state_angle::apply(id, setup)
         || convention::apply(id, setup)
         || fixed_gain::apply(id, setup)
         || form::apply(id, setup)
 }
 
-/// Whether the filter draws points.
+/// Whether the filters of all modes draw points. Where some do, what is made of points and what is made of matrices are both left alone.
 fn draws_points<T: Real>(setup: &Setup<T>) -> bool {
-    let rules = setup.problem.filters.iter().flat_map(|filter| filter.rules());
-    rules.flatten().next().is_some()
+    setup
+        .problem
+        .filters
+        .iter()
+        .all(|filter| filter.rules() != [None, None])
+}
+
+/// Whether no filter draws points.
+fn draws_no_points<T: Real>(setup: &Setup<T>) -> bool {
+    setup
+        .problem
+        .filters
+        .iter()
+        .all(|filter| filter.rules() == [None, None])
 }
 
 /// The points of an estimate with another square root of its covariance; none where the filter of mode j draws none.

@@ -3,7 +3,7 @@
 //! After this file the reader knows the mistakes that can be made in F P Fᵀ + Q.
 
 use super::super::setup::Setup;
-use super::{draws_points, motion_matrix, sum_of_covariance_weights, weights, zero_rows};
+use super::{draws_no_points, draws_points, motion_matrix, sum_of_covariance_weights, weights, zero_rows};
 use crate::filter::{cubature, kalman, raw};
 use crate::imm::Equations;
 use crate::matrix::mirrored;
@@ -109,12 +109,12 @@ fn of_mean<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
 
 /// The predicted covariance.
 fn of_covariance<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
-    let points = draws_points(setup);
+    let (points, no_points) = (draws_points(setup), draws_no_points(setup));
     let entry = &mut setup.equations.predicted_covariance;
     match id {
         // P⁻ = Fᵀ P F + Q
         "prediction-transposed" => {
-            if !points {
+            if no_points {
                 *entry = |problem, _, now, j| {
                     let mode = &problem.modes[j];
                     let transposed = motion_matrix(problem, now, j).transpose();

@@ -7,9 +7,12 @@ use crate::imm::Problem;
 use crate::number::Real;
 use nalgebra::Dyn;
 
+/// Takes something of the first step's problem into another's.
+type Change<T> = fn(&mut Problem<T, Dyn, Dyn>, &Problem<T, Dyn, Dyn>);
+
 /// Applies a variant of the steps; whether it is one.
 pub(super) fn apply<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
-    let change: fn(&mut Problem<T, Dyn, Dyn>, &Problem<T, Dyn, Dyn>) = match id {
+    let change: Change<T> = match id {
         "motion-of-the-first-step" => |problem, first| {
             for (mode, first) in problem.modes.iter_mut().zip(&first.modes) {
                 mode.motion.clone_from(&first.motion);

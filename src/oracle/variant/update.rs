@@ -3,7 +3,7 @@
 //! After this file the reader knows the mistakes that can be made in C S⁻¹, x̂⁻ + W ν and P⁻ − W S Wᵀ.
 
 use super::super::setup::Setup;
-use super::{diagonal, draws_points, measurement_matrix, noise};
+use super::{diagonal, draws_no_points, measurement_matrix, noise};
 use crate::filter::{kalman, update};
 use crate::imm::equations::Factored;
 use crate::imm::{Problem, Step};
@@ -18,19 +18,19 @@ pub(super) fn apply<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
 
 /// The gain.
 fn of_gain<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
-    let points = draws_points(setup);
+    let no_points = draws_no_points(setup);
     let is_square = setup.problems().all(|problem| problem.n() == problem.m());
     let entry = &mut setup.equations.gain;
     match id {
         // derbez2000 (2) as printed: P⁰ʲ Hᵀ (H P⁰ʲ Hᵀ + R)⁻¹
         "gain-of-mixed-covariance" => {
-            if !points {
+            if no_points {
                 *entry = gain_of_mixed;
             }
         }
         // derbez2000 (2) as printed: that gain, and (I − K H) P⁰ʲ
         "update-from-the-mixed-covariance" => {
-            if !points {
+            if no_points {
                 setup.equations.gain = gain_of_mixed;
                 setup.equations.updated_covariance = |problem, _, now, j| {
                     let rest = DMatrix::identity(problem.n().0, problem.n().0)
