@@ -251,6 +251,7 @@ def ready(echo, mistakes):
         "type": "ready",
         "name": "automotive example" + (" with " + " and ".join(mistakes) if mistakes else ""),
         "kinds": ["extended"],
+        "formats": ["immaculate-problem/1", "immaculate-problem/2"],
         "validates": False,
         "echo": np.array(echo["matrix"]) @ np.array(echo["vector"]),
     }
@@ -308,7 +309,6 @@ def unknown(problem):
         "steps with matrices of their own": all(
             set(entry) <= {"step", "z", "T", "sensor", "R"} for entry in problem["measurements"]
         ),
-        "another filter": problem["filter"]["kind"] == "extended",
         "another convention": KNOWN_CONVENTIONS.items() <= problem["conventions"].items(),
     }
     return next((reason for reason, is_known in known.items() if not is_known), None)

@@ -137,7 +137,33 @@ END
     expect 1 "MOST LIKELY, TWO AT ONCE" "(mixed-spread-omitted; mistake)" "(determinant-omitted; mistake)" \
         -- "${short[@]}" -- "${numpy[@]}" --mistake mixed-spread-omitted --mistake determinant-omitted
 
+    automotive "$python" "$adapters/automotive_imm.py"
     filterpy "$python" "$adapters/filterpy_imm.py"
+}
+
+# A filter for a car, its models and Jacobians written by hand, on a problem of its own: right, and each mistake with its equation and name.
+automotive() {
+    local own=tests/adapters/automotive.json
+    expect 0 "RIGHT: automotive example, double precision" "1412 of 1412 values" "every expected value is certified" -- --problem "$own" -- "$@"
+    while read -r mistake quantity; do
+        expect 1 "FAULT $quantity" "MOST LIKELY" "($mistake; mistake)" -- --problem "$own" -- "$@" --mistake "$mistake"
+    done <<'END'
+motion-jacobian-transposed motion_jacobian
+motion-jacobian-at-the-prediction motion_jacobian
+motion-jacobian-last-column-omitted motion_jacobian
+measurement-jacobian-at-the-mixed-mean measurement_jacobian
+bearing-jacobian-negated measurement_jacobian
+motion-by-jacobian predicted.mean
+measurement-by-jacobian predicted_measurement
+motion-of-the-first-step predicted.mean
+process-noise-of-the-first-step predicted.covariance
+innovation-not-wrapped innovation
+mixed-spread-omitted mixed.covariance
+transition-transposed predicted_mode_probabilities
+determinant-omitted log_likelihood
+covariance-not-updated updated.covariance
+combined-spread-omitted combined.covariance
+END
 }
 
 # What is found in FilterPy 2.0.0.
