@@ -84,7 +84,7 @@ impl ProblemFile {
                 noise(mode, &place, &state, &scope)?,
             ]);
         }
-        let of_sensor = |sensor| self.sensor_function(sensor, &state, &scope);
+        let of_sensor = |sensor| Self::sensor_function(sensor, &state, &scope);
         let sensors = sensors.iter().map(of_sensor).collect::<Result<_, Invalid>>()?;
         Ok(Functions { modes, sensors })
     }
@@ -93,26 +93,15 @@ impl ProblemFile {
     ///
     /// # Errors
     ///
-    /// [`Invalid`] for a name that formulas cannot use, and for an angle.
+    /// [`Invalid`] for a name that formulas cannot use.
     pub(super) fn space(&self) -> Result<Space, Invalid> {
-        self.check_angles()?;
         space("problem.state", &self.state, &self.units)
     }
 
-    /// Nothing in the state is an angle.
-    ///
-    /// # Errors
-    ///
-    /// [`Invalid`] with the first one.
-    pub(super) fn check_angles(&self) -> Result<(), Invalid> {
-        let is_angle = |component: &ComponentFile| component.kind == ComponentKind::Angle;
-        match self.state.iter().position(is_angle) {
-            None => Ok(()),
-            Some(index) => {
-                let reason = "is an angle, and no filter here computes with angles in the state yet";
-                Err(Invalid::new(Class::Unknown, format!("problem.state[{index}]"), reason))
-            }
-        }
+    /// Which entries of the state are angles.
+    pub(super) fn angles_of_state(&self) -> Vec<usize> {
+        let is_angle = |index: &usize| self.state[*index].kind == ComponentKind::Angle;
+        (0..self.state.len()).filter(is_angle).collect()
     }
 
     /// What a measurement by formulas or by a model is.
@@ -143,7 +132,6 @@ impl ProblemFile {
     }
 
     fn sensor_function(
-        &self,
         sensor: &SensorAt,
         state: &Space,
         scope: &Scope,

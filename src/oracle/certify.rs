@@ -93,7 +93,7 @@ const BITS_OF_A_PREFIX: u32 = 2048;
 
 /// The expected trace of a problem of any length: certified for the steps that are returned, in doubles for those after them.
 ///
-/// Twice as many steps are tried as before, until some do not certify with [`BITS_OF_A_PREFIX`]. No value of the doubles is proven; their
+/// Twice as many steps are tried as before, until some do not certify with 2048 bits. No value of the doubles is proven; their
 /// rounding noise, by which they are judged, is measured as that of the others is.
 ///
 /// # Errors

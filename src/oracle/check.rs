@@ -5,16 +5,18 @@
 
 use super::case::{self, BadCase, Case, Expected};
 use super::certify::certified_as_far_as_it_goes;
-use super::diagnose::{Diagnosis, Evidence, diagnose};
+use super::diagnose::{Evidence, diagnose};
+use super::evidence::{Beginning, evidence_of};
 use super::invalid::Invalid;
-use super::judge::{self, Finding, Judged, Judgement, LIMIT, Reference};
-use super::problem::{FORMAT, FORMAT_2, FilterFile, ProblemFile, kinds};
+use super::judge::{self, Finding, Judgement, Reference};
+use super::problem::{FORMAT, FORMAT_2, ProblemFile, kinds};
 use super::subject::{Answer, Broken, Precision, Ready, Subject, echoed};
 use super::trace::{Dimensions, Trace};
 use super::variant::{Variant, catalogue};
+pub use super::verdict::{CaseReport, Outcome, Report};
 use crate::imm::Quantity;
 use crate::model::nearest::nearest;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
 /// Which cases are asked for; empty lists ask for all.
@@ -87,166 +89,6 @@ pub enum NotMade {
     SameId(String),
 }
 
-/// How a case went.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Outcome {
-    /// Every value that was shown is right or inherited from none but right ones.
-    Right,
-    /// At least one equation is not what it should be.
-    Wrong,
-    /// The noise is as large as the values.
-    CannotTell,
-    /// Rejected as it must be; the class that the program gave may be another one.
-    Rejected {
-        /// The program's class where it differs.
-        other_class: Option<String>,
-    },
-    /// Not rejected, though it must be.
-    NotRejected,
-    /// Rejected, though it is a good problem.
-    WronglyRejected {
-        /// The program's reason.
-        reason: String,
-    },
-    /// Passed over by the program.
-    Skipped {
-        /// Its reason.
-        reason: String,
-    },
-    /// Nothing was shown.
-    NothingShown,
-    /// The program stopped by itself, before the end.
-    Stopped {
-        /// Its reason.
-        reason: String,
-    },
-    /// No answer.
-    Broken(Broken),
-}
-
-impl Outcome {
-    /// Whether it says that something is wrong.
-    pub fn is_wrong(&self) -> bool {
-        matches!(
-            self,
-            Self::Wrong
-                | Self::NotRejected
-                | Self::WronglyRejected { .. }
-                | Self::Stopped { .. }
-                | Self::Broken(_)
-                | Self::NothingShown
-        )
-    }
-}
-
-/// A case, judged.
-#[derive(Debug, Clone, PartialEq)]
-pub struct CaseReport {
-    /// Its id.
-    pub id: String,
-    /// The filter of each mode.
-    pub filters: Vec<FilterFile>,
-    /// Its dimensions.
-    pub dimensions: Dimensions,
-    /// How it went.
-    pub outcome: Outcome,
-    /// The judged values.
-    pub judgement: Option<Judgement>,
-    /// The number of values that were judged, of those that the case has.
-    pub judged: usize,
-    /// The number of values of the case.
-    pub of: usize,
-    /// The digits that the worst of the values that are right has, in its scale.
-    pub digits: Option<f64>,
-    /// Why the program stopped before the end, if it did.
-    pub stopped: Option<String>,
-    /// Of a problem that is not published, the steps whose values are certified; the expected values of the others are doubles.
-    pub certified: Option<usize>,
-}
-
-impl CaseReport {
-    /// The report of a case before anything of it is judged.
-    pub fn new(problem: &ProblemFile) -> Self {
-        Self {
-            id: problem.id.clone(),
-            filters: (0..problem.modes.len())
-                .map(|mode| problem.filter_of(mode).clone())
-                .collect(),
-            dimensions: problem.dimensions(),
-            outcome: Outcome::NothingShown,
-            judgement: None,
-            judged: 0,
-            of: 0,
-            digits: None,
-            stopped: None,
-            certified: None,
-        }
-    }
-
-    /// The columns of a quantity in a step of the case.
-    pub fn columns(&self, step: usize, quantity: Quantity) -> usize {
-        self.dimensions.shape(step, quantity).1
-    }
-}
-
-/// The whole verdict.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Report {
-    /// What the program said of itself.
-    pub ready: Ready,
-    /// Whether its echo is right; none if it gave none.
-    pub echo: Option<bool>,
-    /// The cases.
-    pub cases: Vec<CaseReport>,
-    /// The cases for which it has no filter, or that its caller must check.
-    pub not_asked: usize,
-    /// What explains the faults.
-    pub diagnosis: Diagnosis,
-    /// The quantities that were never shown.
-    pub hidden: Vec<Quantity>,
-    /// What was strange on the way.
-    pub remarks: Vec<String>,
-}
-
-impl Report {
-    /// Whether all faults are those of a form or a convention, which are not wrong. They do not excuse an early end.
-    pub fn is_excused(&self) -> bool {
-        let is_early = |case: &CaseReport| case.outcome == Outcome::Wrong && case.stopped.is_some();
-        self.diagnosis.is_excuse() && !self.cases.iter().any(is_early)
-    }
-
-    /// Whether nothing could be judged at all.
-    pub fn is_empty(&self) -> bool {
-        let is_judged = |case: &CaseReport| {
-            !matches!(
-                case.outcome,
-                Outcome::Skipped { .. } | Outcome::CannotTell | Outcome::NothingShown
-            )
-        };
-        !self.cases.iter().any(is_judged)
-    }
-
-    /// Whether anything is wrong.
-    pub fn is_wrong(&self) -> bool {
-        let is_excused = self.is_excused();
-        self.echo == Some(false)
-            || self.cases.iter().any(|case| match case.outcome {
-                Outcome::Wrong => !is_excused,
-                ref outcome => outcome.is_wrong(),
-            })
-    }
-
-    /// The faults, each with its case.
-    pub fn faults(&self) -> impl Iterator<Item = (&CaseReport, &Judged)> {
-        self.cases.iter().flat_map(|case| {
-            let values = case.judgement.iter().flat_map(|judgement| &judgement.values);
-            values
-                .filter(|value| matches!(value.finding, Finding::Fault | Finding::NotFinite))
-                .map(move |value| (case, value))
-        })
-    }
-}
-
 /// Every declared name is one that there is.
 fn check_known(what: &'static str, declared: Option<&Vec<String>>, known: Vec<&str>) -> Result<(), NotMade> {
     let is_unknown = |name: &&String| !known.contains(&name.as_str());
@@ -255,7 +97,7 @@ fn check_known(what: &'static str, declared: Option<&Vec<String>>, known: Vec<&s
         Some(name) => Err(NotMade::Unknown {
             what,
             name: name.clone(),
-            nearest: nearest(name, known.into_iter()),
+            nearest: nearest(name, known),
         }),
     }
 }
@@ -621,70 +463,4 @@ fn summarise(report: &mut CaseReport, judgement: &Judgement, error: Option<Strin
     } else {
         Outcome::Right
     };
-}
-
-/// The beginning of a long answer, to a little after its first fault.
-struct Beginning {
-    case: usize,
-    problem: ProblemFile,
-    shown: Trace,
-    reference: Reference,
-}
-
-impl Beginning {
-    /// The steps after the first fault: in two of them a mistake in almost any equation is made again, and the last is not judged.
-    const STEPS_AFTER: usize = 3;
-
-    /// None of an answer without a fault, or where it would be the greater part.
-    fn of(
-        index: usize,
-        report: &CaseReport,
-        problem: &ProblemFile,
-        shown: &Trace,
-        reference: &Reference,
-    ) -> Option<Self> {
-        let values = report.judgement.iter().flat_map(|judgement| &judgement.values);
-        let is_fault = |value: &&Judged| matches!(value.finding, Finding::Fault | Finding::NotFinite);
-        let first = values.filter(is_fault).map(|value| value.place.0).min()?;
-        let steps = first + Self::STEPS_AFTER;
-        if 2 * steps > problem.measurements.len() {
-            return None;
-        }
-        let mut problem = problem.clone();
-        problem.measurements.truncate(steps);
-        Some(Self {
-            case: index,
-            problem,
-            shown: shown.beginning(steps),
-            reference: reference.beginning(steps),
-        })
-    }
-}
-
-fn evidence_of<'a>(
-    report: &CaseReport,
-    problem: &'a ProblemFile,
-    shown: &'a Trace,
-    reference: &'a Reference,
-    ready: &Ready,
-) -> Evidence<'a> {
-    let values = report.judgement.iter().flat_map(|judgement| &judgement.values);
-    let says_nothing = |value: &&Judged| match value.finding {
-        Finding::Stale | Finding::CannotTell => true,
-        Finding::NotFinite => false,
-        Finding::Right => value.own.is_none_or(|own| own.ratio > LIMIT),
-        _ => value.own.is_none(),
-    };
-    let passed: BTreeSet<_> = values.filter(says_nothing).map(|value| value.place).collect();
-    Evidence {
-        case: judge::Case {
-            problem,
-            shown,
-            reference,
-            precision: ready.precision,
-        },
-        passed,
-        is_faulty: report.outcome == Outcome::Wrong,
-        is_beginning: false,
-    }
 }

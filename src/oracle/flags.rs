@@ -119,10 +119,10 @@ pub const FLAGS: [(&str, &str); 49] = [
         "formulas",
         "A motion or a measurement is a formula or a named model that is no matrix.",
     ),
-    (
-        "several-sensors",
-        "Sensors of different dimensions see in different steps.",
-    ),
     ("changing-steps", "F, Q, R or the chain are others in some steps."),
+    (
+        "state-angle",
+        "An entry of the state is an angle, and estimates lie on both sides of its cut at pi.",
+    ),
     ("rejected", "It must be refused."),
 ];

@@ -97,6 +97,8 @@ struct Turns {
     measured: Vec<Vec<bool>>,
     /// The sensor of each step.
     sensors: Vec<usize>,
+    /// Entries of the state.
+    of_state: Vec<usize>,
 }
 
 impl Turns {
@@ -109,6 +111,7 @@ impl Turns {
                 .iter()
                 .map(|entry| problem.sensor_of(entry).unwrap_or(0))
                 .collect(),
+            of_state: problem.angles_of_state(),
         }
     }
 
@@ -116,6 +119,11 @@ impl Turns {
     fn has(&self, (step, quantity, _): Place, index: usize) -> bool {
         match quantity {
             Quantity::PredictedMeasurement => self.measured[self.sensors[step - 1]].get(index) == Some(&true),
+            Quantity::MixedMean
+            | Quantity::PredictedMean
+            | Quantity::CombinedPredictionMean
+            | Quantity::UpdatedMean
+            | Quantity::CombinedMean => self.of_state.contains(&index),
             _ => false,
         }
     }
@@ -215,6 +223,7 @@ impl Reference {
 
 impl Reference {
     /// That of the first steps alone.
+    #[must_use]
     pub fn beginning(&self, steps: usize) -> Self {
         Self {
             trace: self.trace.beginning(steps),

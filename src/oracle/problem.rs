@@ -3,12 +3,14 @@
 //! After this file the reader knows the formats `immaculate-problem/1` and `/2` from the code's side (`spec/formats.md` is their
 //! description). Format 1 is format 2 without what [`super::models`] adds. What must be true of a file is in `well_formed`.
 
+pub use super::filter_file::{FilterFile, FixedGainFile, MIXINGS, RULES, UNMIXED, kinds};
 use super::invalid::{Class, Invalid};
 use super::models::{ComponentFile, ModeKeys, ModeModels, ModelParameters};
 use super::single;
+pub use super::steps::MeasurementAt;
 use super::trace::Dimensions;
 use super::unreadable;
-use crate::imm::{Needs, Quantity};
+use crate::imm::Needs;
 use crate::model::space::ComponentKind;
 use schemars::JsonSchema;
 use serde::de::IgnoredAny;
@@ -19,38 +21,6 @@ pub const FORMAT: &str = "immaculate-problem/1";
 
 /// The format in which they may be formulas and named models, too, and may change from step to step.
 pub const FORMAT_2: &str = "immaculate-problem/2";
-
-/// The rules of cubature filters. What a paper prints wrongly is no rule of a problem.
-pub const RULES: [&str; 7] = [
-    "cubature-3",
-    "cubature-5",
-    "simplex-5",
-    "gauss-hermite-2",
-    "gauss-hermite-3",
-    "gauss-hermite-4",
-    "gauss-hermite-5",
-];
-
-/// The readings of filters with fixed gains: each mode starts from a mixed estimate, or from its own.
-pub const MIXINGS: [&str; 2] = ["mixed", UNMIXED];
-
-/// The reading in which each mode starts from its own estimate.
-pub const UNMIXED: &str = "unmixed";
-
-/// The kinds of filter whose name is not that of a rule.
-const OTHER_KINDS: [&str; 6] = [
-    "kalman",
-    "extended",
-    "unscented",
-    "converted",
-    "fixed-gain",
-    "fixed-gain-unmixed",
-];
-
-/// The names of all kinds of filter, [`FilterFile::name`].
-pub fn kinds() -> impl Iterator<Item = &'static str> {
-    OTHER_KINDS.into_iter().chain(RULES)
-}
 
 /// A matrix as a list of rows.
 pub type Rows = Vec<Vec<f64>>;
@@ -178,111 +148,10 @@ pub struct SensorAt<'a> {
     pub place: String,
 }
 
-/// The filter.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
-pub enum FilterFile {
-    /// Linear motion and measurement.
-    Kalman {},
-    /// Motion and measurement at their slopes. Format 2.
-    Extended {},
-    /// Moments by the points of a rule.
-    Cubature {
-        /// `cubature-3`, `cubature-5`, `simplex-5`, `gauss-hermite-2` to `gauss-hermite-5`.
-        rule: String,
-    },
-    /// Moments by the points of the unscented rule.
-    Unscented {
-        /// α.
-        alpha: f64,
-        /// β.
-        beta: f64,
-        /// κ.
-        kappa: f64,
-    },
-    /// Linear motion; range and bearing that are turned into a position.
-    Converted {
-        /// `standard`, `additive`, `multiplicative` or `modified-unbiased`.
-        conversion: String,
-    },
-    /// Linear motion and measurement, with gains that are given and no covariances.
-    FixedGain {
-        /// `mixed` or `unmixed`: whether a mode starts from a mixed estimate, or from its own.
-        mixing: String,
-        /// One a mode.
-        modes: Vec<FixedGainFile>,
-    },
-}
-
-/// What a mode has in place of covariances.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct FixedGainFile {
-    /// n × m.
-    pub gain: Rows,
-    /// m × m.
-    pub innovation_covariance: Rows,
-}
-
 impl MeasurementFile {
     /// Whether it is given by formulas or by a model.
     pub(super) fn is_function(&self) -> bool {
         matches!(self, Self::Formulas { .. } | Self::Model { .. })
-    }
-
-    /// Whether an entry is a distance.
-    pub(super) fn is_range(&self, row: usize) -> bool {
-        match self {
-            Self::RangeBearing { components, .. } => components.get(row).is_some_and(|component| component == "range"),
-            _ => false,
-        }
-    }
-}
-
-impl FilterFile {
-    /// The kind's short name: `kalman`, `extended`, `unscented`, the rule's, `converted`, `fixed-gain` or, where no estimates are mixed,
-    /// `fixed-gain-unmixed`.
-    pub fn name(&self) -> &str {
-        match self {
-            Self::Kalman {} => "kalman",
-            Self::Extended {} => "extended",
-            Self::Cubature { rule } => rule,
-            Self::Unscented { .. } => "unscented",
-            Self::Converted { .. } => "converted",
-            Self::FixedGain { mixing, .. } if mixing == UNMIXED => "fixed-gain-unmixed",
-            Self::FixedGain { .. } => "fixed-gain",
-        }
-    }
-
-    /// The printed equations that give a quantity: with fixed gains the gain and the innovation covariance are not computed but given.
-    pub fn equation(&self, quantity: Quantity) -> &'static str {
-        match (self, quantity) {
-            (Self::FixedGain { .. }, Quantity::InnovationCovariance) => "derbez2000 (4), given",
-            (Self::FixedGain { .. }, Quantity::Gain) => "derbez2000, section 3, given",
-            (Self::FixedGain { .. }, Quantity::UpdatedMean) => "derbez2000, section 3",
-            (Self::Converted { .. }, Quantity::Innovation | Quantity::PredictedMeasurement) => "sustika2015 (18)",
-            (Self::Converted { .. }, Quantity::InnovationCovariance) => "sustika2015 (16)",
-            (Self::Converted { .. }, Quantity::CrossCovariance | Quantity::Gain) => "sustika2015 (17)",
-            (
-                Self::Extended {},
-                Quantity::PredictedMean
-                | Quantity::PredictedCovariance
-                | Quantity::PredictedMeasurement
-                | Quantity::InnovationCovariance
-                | Quantity::CrossCovariance,
-            ) => "Bar-Shalom, Li and Kirubarajan 2001, section 10.3",
-            _ => quantity.equation(),
-        }
-    }
-
-    /// Whether what a value needs is there in filters of this kind, apart from a detection.
-    pub fn has(&self, needed: Needs) -> bool {
-        match needed {
-            Needs::Covariances => !matches!(self, Self::FixedGain { .. }),
-            Needs::Conversion => matches!(self, Self::Converted { .. }),
-            Needs::LinearisedMotion | Needs::LinearisedMeasurement => matches!(self, Self::Extended {}),
-            Needs::Detection => true,
-        }
     }
 }
 
@@ -334,6 +203,9 @@ pub struct Conventions {
     /// `embedded`; where a mode sets an entry of the state to zero that another has.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unequal_dimensions: Option<String>,
+    /// `reference`; where an entry of the state is an angle.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub state_angle_mean: Option<String>,
     /// `at-measurement`; where measurements are converted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub converted_covariance: Option<String>,
@@ -348,6 +220,7 @@ impl Conventions {
             "first_step" => &self.first_step,
             "log_likelihood" => &self.log_likelihood,
             "unequal_dimensions" => self.unequal_dimensions.as_deref().unwrap_or("embedded"),
+            "state_angle_mean" => self.state_angle_mean.as_deref().unwrap_or("reference"),
             "converted_covariance" => self.converted_covariance.as_deref().unwrap_or("at-measurement"),
             _ => return false,
         };
@@ -363,102 +236,9 @@ impl Default for Conventions {
             first_step: "mixed".into(),
             log_likelihood: "full".into(),
             unequal_dimensions: None,
+            state_angle_mean: None,
             converted_covariance: None,
         }
-    }
-}
-
-/// The measurement of a step; `null` is a missed detection. What format 2 adds replaces the problem's for this step.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct MeasurementAt {
-    /// The step, counted from 1.
-    pub step: usize,
-    /// m numbers, or null.
-    #[serde(deserialize_with = "Option::deserialize")]
-    #[schemars(required)]
-    pub z: Option<Vec<f64>>,
-    /// The name of the sensor that sees in this step. Format 2.
-    #[serde(
-        default,
-        skip_serializing_if = "Option::is_none",
-        deserialize_with = "if_there_at_all"
-    )]
-    #[schemars(with = "String")]
-    pub sensor: Option<String>,
-    /// The length of the step, T in formulas. Format 2.
-    #[serde(
-        default,
-        skip_serializing_if = "Option::is_none",
-        deserialize_with = "if_there_at_all",
-        rename = "T"
-    )]
-    #[schemars(with = "f64")]
-    pub interval: Option<f64>,
-    /// F of each mode. Format 2.
-    #[serde(
-        default,
-        skip_serializing_if = "Option::is_none",
-        deserialize_with = "if_there_at_all",
-        rename = "F"
-    )]
-    #[schemars(with = "Vec<Rows>")]
-    pub transitions: Option<Vec<Rows>>,
-    /// Q of each mode. Format 2.
-    #[serde(
-        default,
-        skip_serializing_if = "Option::is_none",
-        deserialize_with = "if_there_at_all",
-        rename = "Q"
-    )]
-    #[schemars(with = "Vec<Rows>")]
-    pub noises: Option<Vec<Rows>>,
-    /// H of a linear measurement. Format 2.
-    #[serde(
-        default,
-        skip_serializing_if = "Option::is_none",
-        deserialize_with = "if_there_at_all",
-        rename = "H"
-    )]
-    #[schemars(with = "Rows")]
-    pub matrix: Option<Rows>,
-    /// Covariance of the measurement's noise. Format 2.
-    #[serde(
-        default,
-        skip_serializing_if = "Option::is_none",
-        deserialize_with = "if_there_at_all",
-        rename = "R"
-    )]
-    #[schemars(with = "Rows")]
-    pub noise: Option<Rows>,
-    /// The Markov chain from the step before to this one. Format 2.
-    #[serde(
-        default,
-        skip_serializing_if = "Option::is_none",
-        deserialize_with = "if_there_at_all"
-    )]
-    #[schemars(with = "Rows")]
-    pub transition: Option<Rows>,
-}
-
-impl MeasurementAt {
-    /// Whether anything is another in this step than in the problem.
-    pub(super) fn has_changes(&self) -> bool {
-        self.first_change().is_some()
-    }
-
-    /// The first key that changes something.
-    pub(super) fn first_change(&self) -> Option<&'static str> {
-        let keys = [
-            ("sensor", self.sensor.is_some()),
-            ("T", self.interval.is_some()),
-            ("F", self.transitions.is_some()),
-            ("Q", self.noises.is_some()),
-            ("H", self.matrix.is_some()),
-            ("R", self.noise.is_some()),
-            ("transition", self.transition.is_some()),
-        ];
-        keys.into_iter().find(|(_, is_there)| *is_there).map(|(key, _)| key)
     }
 }
 
@@ -472,7 +252,7 @@ impl ProblemFile {
     ///
     /// let case = case::all().unwrap().iter().find(|case| case.problem.id == "step.n4-m2.two-modes").unwrap();
     /// let problem = ProblemFile::read(&case.problem_text).unwrap();
-    /// assert_eq!((problem.dimensions().n, problem.dimensions().m), (4, 2));
+    /// assert_eq!((problem.state.len(), problem.noise.len()), (4, 2));
     /// // What is wrong with a file is said in a sentence with the place.
     /// let spoilt = case.problem_text.replacen("\"transition\"", "\"transitions\"", 1);
     /// assert!(ProblemFile::read(&spoilt).unwrap_err().to_string().contains("transitions"));
@@ -577,6 +357,20 @@ impl ProblemFile {
         let Some(name) = &entry.sensor else { return Some(0) };
         let index = self.sensors.iter().position(|sensor| sensor.name == *name)?;
         Some(index + 1)
+    }
+
+    /// Which entries of a sensor's measurement are distances; of formulas nobody knows.
+    pub(super) fn ranges_of(&self, sensor: &SensorAt) -> Vec<bool> {
+        match sensor.measurement {
+            MeasurementFile::RangeBearing { components, .. } => {
+                components.iter().map(|component| component == "range").collect()
+            }
+            MeasurementFile::Model { .. } => self.measured_space(sensor).map_or_else(
+                |_| Vec::new(),
+                |space| space.names().into_iter().map(|name| name == "range").collect(),
+            ),
+            MeasurementFile::Linear { .. } | MeasurementFile::Formulas { .. } => Vec::new(),
+        }
     }
 
     /// Which entries of a sensor's measurement are angles.

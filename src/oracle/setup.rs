@@ -140,6 +140,7 @@ impl ProblemFile {
                 FilterFile::FixedGain { mixing, .. } if mixing == UNMIXED => Interaction::Unmixed,
                 _ => Interaction::Imm,
             },
+            angles: self.angles_of_state(),
             chain: self.transition.iter().map(|row| list(row)).collect(),
             sensor: self.sensor(0, &functions, number, interval)?,
             measurement_noise: matrix(&self.noise, number),

@@ -4,10 +4,106 @@
 
 use super::invalid::{Class, Invalid};
 use super::problem::{
-    FORMAT, FORMAT_2, FilterFile, MeasurementAt, MeasurementFile, ModeFile, ProblemFile, Rows, SensorAt,
+    FORMAT, FORMAT_2, FilterFile, MeasurementFile, ModeFile, ProblemFile, Rows, SensorAt, if_there_at_all,
 };
 use super::well_formed::{check_length, check_matrix};
 use crate::model::binding::STEP;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The measurement of a step; `null` is a missed detection. What format 2 adds replaces the problem's for this step.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MeasurementAt {
+    /// The step, counted from 1.
+    pub step: usize,
+    /// m numbers, or null.
+    #[serde(deserialize_with = "Option::deserialize")]
+    #[schemars(required)]
+    pub z: Option<Vec<f64>>,
+    /// The name of the sensor that sees in this step. Format 2.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "if_there_at_all"
+    )]
+    #[schemars(with = "String")]
+    pub sensor: Option<String>,
+    /// The length of the step, T in formulas. Format 2.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "if_there_at_all",
+        rename = "T"
+    )]
+    #[schemars(with = "f64")]
+    pub interval: Option<f64>,
+    /// F of each mode. Format 2.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "if_there_at_all",
+        rename = "F"
+    )]
+    #[schemars(with = "Vec<Rows>")]
+    pub transitions: Option<Vec<Rows>>,
+    /// Q of each mode. Format 2.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "if_there_at_all",
+        rename = "Q"
+    )]
+    #[schemars(with = "Vec<Rows>")]
+    pub noises: Option<Vec<Rows>>,
+    /// H of a linear measurement. Format 2.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "if_there_at_all",
+        rename = "H"
+    )]
+    #[schemars(with = "Rows")]
+    pub matrix: Option<Rows>,
+    /// Covariance of the measurement's noise. Format 2.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "if_there_at_all",
+        rename = "R"
+    )]
+    #[schemars(with = "Rows")]
+    pub noise: Option<Rows>,
+    /// The Markov chain from the step before to this one. Format 2.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "if_there_at_all"
+    )]
+    #[schemars(with = "Rows")]
+    pub transition: Option<Rows>,
+}
+
+impl MeasurementAt {
+    /// Whether anything is another in this step than in the problem.
+    pub(super) fn has_changes(&self) -> bool {
+        self.first_change().is_some()
+    }
+
+    /// The first key that changes something.
+    pub(super) fn first_change(&self) -> Option<&'static str> {
+        let keys = [
+            ("sensor", self.sensor.is_some()),
+            ("T", self.interval.is_some()),
+            ("F", self.transitions.is_some()),
+            ("Q", self.noises.is_some()),
+            ("H", self.matrix.is_some()),
+            ("R", self.noise.is_some()),
+            ("transition", self.transition.is_some()),
+        ];
+        keys.into_iter().find(|(_, is_there)| *is_there).map(|(key, _)| key)
+    }
+}
 
 impl ProblemFile {
     /// A problem of format 1 has nothing of format 2.
@@ -56,7 +152,6 @@ impl ProblemFile {
 
     /// The functions can be read, fit each other, and know how long a step is.
     pub(super) fn check_functions(&self) -> Result<(), Invalid> {
-        self.check_angles()?;
         let has_own_units = self.state.iter().any(|component| component.unit.is_some());
         if has_own_units && !self.units.is_empty() {
             let reason = "is given, and the state has units, too; they are said once";

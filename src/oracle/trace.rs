@@ -121,6 +121,7 @@ impl<V> Table<V> {
     }
 
     /// The first steps alone.
+    #[must_use]
     pub fn beginning(&self, steps: usize) -> Self
     where
         V: Clone,

@@ -68,6 +68,7 @@ impl ProblemFile {
         ];
         let later = [
             ("unequal_dimensions", &given.unequal_dimensions),
+            ("state_angle_mean", &given.state_angle_mean),
             ("converted_covariance", &given.converted_covariance),
         ];
         let later = later
@@ -249,6 +250,7 @@ impl ProblemFile {
         let sensors = self.sensors_at();
         self.check_names_of_sensors()?;
         let angles: Vec<Vec<bool>> = sensors.iter().map(|sensor| self.angles_of(sensor)).collect();
+        let ranges: Vec<Vec<bool>> = sensors.iter().map(|sensor| self.ranges_of(sensor)).collect();
         for (place, entry) in self.measurements.iter().enumerate() {
             if entry.step != place + 1 {
                 let field = format!("problem.measurements[{place}].step");
@@ -273,7 +275,7 @@ impl ProblemFile {
                         "is not finite",
                     ));
                 }
-                if sensor.measurement.is_range(row) && *value < 0.0 {
+                if ranges[index].get(row) == Some(&true) && *value < 0.0 {
                     let reason = format!("is {value}, a negative range; a range is a distance");
                     return Err(Invalid::new(Class::Range, format!("{field}[{row}]"), reason));
                 }
@@ -325,6 +327,7 @@ fn of_problem(error: &InvalidProblem) -> Invalid {
         | InvalidProblem::NoFilters
         | InvalidProblem::Shape { .. }
         | InvalidProblem::RuleLengths { .. }
+        | InvalidProblem::Angle { .. }
         | InvalidProblem::Position { .. }
         | InvalidProblem::PositionTwice { .. } => Class::Shape,
         InvalidProblem::NotFinite { .. } => Class::NotFinite,

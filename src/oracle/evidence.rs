@@ -1,0 +1,77 @@
+//! What is explained: the answers of a program, long ones by their beginnings first.
+
+use super::diagnose::Evidence;
+use super::judge::{self, Finding, Judged, LIMIT, Reference};
+use super::problem::ProblemFile;
+use super::subject::Ready;
+use super::trace::Trace;
+use super::verdict::{CaseReport, Outcome};
+use std::collections::BTreeSet;
+
+/// The beginning of a long answer, to a little after its first fault.
+pub(super) struct Beginning {
+    /// Which of the answered cases it is of.
+    pub(super) case: usize,
+    pub(super) problem: ProblemFile,
+    pub(super) shown: Trace,
+    pub(super) reference: Reference,
+}
+
+impl Beginning {
+    /// The steps after the first fault: in two of them a mistake in almost any equation is made again, and the last is not judged.
+    const STEPS_AFTER: usize = 3;
+
+    /// None of an answer without a fault, or where it would be the greater part.
+    pub(super) fn of(
+        index: usize,
+        report: &CaseReport,
+        problem: &ProblemFile,
+        shown: &Trace,
+        reference: &Reference,
+    ) -> Option<Self> {
+        let values = report.judgement.iter().flat_map(|judgement| &judgement.values);
+        let is_fault = |value: &&Judged| matches!(value.finding, Finding::Fault | Finding::NotFinite);
+        let first = values.filter(is_fault).map(|value| value.place.0).min()?;
+        let steps = first + Self::STEPS_AFTER;
+        if 2 * steps > problem.measurements.len() {
+            return None;
+        }
+        let mut problem = problem.clone();
+        problem.measurements.truncate(steps);
+        Some(Self {
+            case: index,
+            problem,
+            shown: shown.beginning(steps),
+            reference: reference.beginning(steps),
+        })
+    }
+}
+
+/// What an answer says to whoever looks for what was done.
+pub(super) fn evidence_of<'a>(
+    report: &CaseReport,
+    problem: &'a ProblemFile,
+    shown: &'a Trace,
+    reference: &'a Reference,
+    ready: &Ready,
+) -> Evidence<'a> {
+    let values = report.judgement.iter().flat_map(|judgement| &judgement.values);
+    let says_nothing = |value: &&Judged| match value.finding {
+        Finding::Stale | Finding::CannotTell => true,
+        Finding::NotFinite => false,
+        Finding::Right => value.own.is_none_or(|own| own.ratio > LIMIT),
+        _ => value.own.is_none(),
+    };
+    let passed: BTreeSet<_> = values.filter(says_nothing).map(|value| value.place).collect();
+    Evidence {
+        case: judge::Case {
+            problem,
+            shown,
+            reference,
+            precision: ready.precision,
+        },
+        passed,
+        is_faulty: report.outcome == Outcome::Wrong,
+        is_beginning: false,
+    }
+}

@@ -1,0 +1,131 @@
+//! The filter of a problem file: its kind, with what the kind needs.
+
+use super::problem::Rows;
+use crate::imm::{Needs, Quantity};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The rules of cubature filters. What a paper prints wrongly is no rule of a problem.
+pub const RULES: [&str; 7] = [
+    "cubature-3",
+    "cubature-5",
+    "simplex-5",
+    "gauss-hermite-2",
+    "gauss-hermite-3",
+    "gauss-hermite-4",
+    "gauss-hermite-5",
+];
+
+/// The readings of filters with fixed gains: each mode starts from a mixed estimate, or from its own.
+pub const MIXINGS: [&str; 2] = ["mixed", UNMIXED];
+
+/// The reading in which each mode starts from its own estimate.
+pub const UNMIXED: &str = "unmixed";
+
+/// The kinds of filter whose name is not that of a rule.
+const OTHER_KINDS: [&str; 6] = [
+    "kalman",
+    "extended",
+    "unscented",
+    "converted",
+    "fixed-gain",
+    "fixed-gain-unmixed",
+];
+
+/// The names of all kinds of filter, [`FilterFile::name`].
+pub fn kinds() -> impl Iterator<Item = &'static str> {
+    OTHER_KINDS.into_iter().chain(RULES)
+}
+
+/// The filter.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+pub enum FilterFile {
+    /// Linear motion and measurement.
+    Kalman {},
+    /// Motion and measurement at their slopes. Format 2.
+    Extended {},
+    /// Moments by the points of a rule.
+    Cubature {
+        /// `cubature-3`, `cubature-5`, `simplex-5`, `gauss-hermite-2` to `gauss-hermite-5`.
+        rule: String,
+    },
+    /// Moments by the points of the unscented rule.
+    Unscented {
+        /// α.
+        alpha: f64,
+        /// β.
+        beta: f64,
+        /// κ.
+        kappa: f64,
+    },
+    /// Linear motion; range and bearing that are turned into a position.
+    Converted {
+        /// `standard`, `additive`, `multiplicative` or `modified-unbiased`.
+        conversion: String,
+    },
+    /// Linear motion and measurement, with gains that are given and no covariances.
+    FixedGain {
+        /// `mixed` or `unmixed`: whether a mode starts from a mixed estimate, or from its own.
+        mixing: String,
+        /// One a mode.
+        modes: Vec<FixedGainFile>,
+    },
+}
+
+/// What a mode has in place of covariances.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FixedGainFile {
+    /// n × m.
+    pub gain: Rows,
+    /// m × m.
+    pub innovation_covariance: Rows,
+}
+
+impl FilterFile {
+    /// The kind's short name: `kalman`, `extended`, `unscented`, the rule's, `converted`, `fixed-gain` or, where no estimates are mixed,
+    /// `fixed-gain-unmixed`.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Kalman {} => "kalman",
+            Self::Extended {} => "extended",
+            Self::Cubature { rule } => rule,
+            Self::Unscented { .. } => "unscented",
+            Self::Converted { .. } => "converted",
+            Self::FixedGain { mixing, .. } if mixing == UNMIXED => "fixed-gain-unmixed",
+            Self::FixedGain { .. } => "fixed-gain",
+        }
+    }
+
+    /// The printed equations that give a quantity: with fixed gains the gain and the innovation covariance are not computed but given.
+    pub fn equation(&self, quantity: Quantity) -> &'static str {
+        match (self, quantity) {
+            (Self::FixedGain { .. }, Quantity::InnovationCovariance) => "derbez2000 (4), given",
+            (Self::FixedGain { .. }, Quantity::Gain) => "derbez2000, section 3, given",
+            (Self::FixedGain { .. }, Quantity::UpdatedMean) => "derbez2000, section 3",
+            (Self::Converted { .. }, Quantity::Innovation | Quantity::PredictedMeasurement) => "sustika2015 (18)",
+            (Self::Converted { .. }, Quantity::InnovationCovariance) => "sustika2015 (16)",
+            (Self::Converted { .. }, Quantity::CrossCovariance | Quantity::Gain) => "sustika2015 (17)",
+            (
+                Self::Extended {},
+                Quantity::PredictedMean
+                | Quantity::PredictedCovariance
+                | Quantity::PredictedMeasurement
+                | Quantity::InnovationCovariance
+                | Quantity::CrossCovariance,
+            ) => "Bar-Shalom, Li and Kirubarajan 2001, section 10.3",
+            _ => quantity.equation(),
+        }
+    }
+
+    /// Whether what a value needs is there in filters of this kind, apart from a detection.
+    pub fn has(&self, needed: Needs) -> bool {
+        match needed {
+            Needs::Covariances => !matches!(self, Self::FixedGain { .. }),
+            Needs::Conversion => matches!(self, Self::Converted { .. }),
+            Needs::LinearisedMotion | Needs::LinearisedMeasurement => matches!(self, Self::Extended {}),
+            Needs::Detection => true,
+        }
+    }
+}

@@ -1,0 +1,170 @@
+//! The verdict on a program: how each case went, and what explains the faults.
+//!
+//! After this file the reader knows which outcomes there are, and when a program is wrong.
+
+use super::diagnose::Diagnosis;
+use super::judge::{Finding, Judged, Judgement};
+use super::problem::{FilterFile, ProblemFile};
+use super::subject::{Broken, Ready};
+use super::trace::Dimensions;
+use crate::imm::Quantity;
+
+/// How a case went.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Outcome {
+    /// Every value that was shown is right or inherited from none but right ones.
+    Right,
+    /// At least one equation is not what it should be.
+    Wrong,
+    /// The noise is as large as the values.
+    CannotTell,
+    /// Rejected as it must be; the class that the program gave may be another one.
+    Rejected {
+        /// The program's class where it differs.
+        other_class: Option<String>,
+    },
+    /// Not rejected, though it must be.
+    NotRejected,
+    /// Rejected, though it is a good problem.
+    WronglyRejected {
+        /// The program's reason.
+        reason: String,
+    },
+    /// Passed over by the program.
+    Skipped {
+        /// Its reason.
+        reason: String,
+    },
+    /// Nothing was shown.
+    NothingShown,
+    /// The program stopped by itself, before the end.
+    Stopped {
+        /// Its reason.
+        reason: String,
+    },
+    /// No answer.
+    Broken(Broken),
+}
+
+impl Outcome {
+    /// Whether it says that something is wrong.
+    pub fn is_wrong(&self) -> bool {
+        matches!(
+            self,
+            Self::Wrong
+                | Self::NotRejected
+                | Self::WronglyRejected { .. }
+                | Self::Stopped { .. }
+                | Self::Broken(_)
+                | Self::NothingShown
+        )
+    }
+}
+
+/// A case, judged.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CaseReport {
+    /// Its id.
+    pub id: String,
+    /// The filter of each mode.
+    pub filters: Vec<FilterFile>,
+    /// Its dimensions.
+    pub dimensions: Dimensions,
+    /// How it went.
+    pub outcome: Outcome,
+    /// The judged values.
+    pub judgement: Option<Judgement>,
+    /// The number of values that were judged, of those that the case has.
+    pub judged: usize,
+    /// The number of values of the case.
+    pub of: usize,
+    /// The digits that the worst of the values that are right has, in its scale.
+    pub digits: Option<f64>,
+    /// Why the program stopped before the end, if it did.
+    pub stopped: Option<String>,
+    /// Of a problem that is not published, the steps whose values are certified; the expected values of the others are doubles.
+    pub certified: Option<usize>,
+}
+
+impl CaseReport {
+    /// The report of a case before anything of it is judged.
+    pub fn new(problem: &ProblemFile) -> Self {
+        Self {
+            id: problem.id.clone(),
+            filters: (0..problem.modes.len())
+                .map(|mode| problem.filter_of(mode).clone())
+                .collect(),
+            dimensions: problem.dimensions(),
+            outcome: Outcome::NothingShown,
+            judgement: None,
+            judged: 0,
+            of: 0,
+            digits: None,
+            stopped: None,
+            certified: None,
+        }
+    }
+
+    /// The columns of a quantity in a step of the case.
+    pub fn columns(&self, step: usize, quantity: Quantity) -> usize {
+        self.dimensions.shape(step, quantity).1
+    }
+}
+
+/// The whole verdict.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Report {
+    /// What the program said of itself.
+    pub ready: Ready,
+    /// Whether its echo is right; none if it gave none.
+    pub echo: Option<bool>,
+    /// The cases.
+    pub cases: Vec<CaseReport>,
+    /// The cases for which it has no filter, or that its caller must check.
+    pub not_asked: usize,
+    /// What explains the faults.
+    pub diagnosis: Diagnosis,
+    /// The quantities that were never shown.
+    pub hidden: Vec<Quantity>,
+    /// What was strange on the way.
+    pub remarks: Vec<String>,
+}
+
+impl Report {
+    /// Whether all faults are those of a form or a convention, which are not wrong. They do not excuse an early end.
+    pub fn is_excused(&self) -> bool {
+        let is_early = |case: &CaseReport| case.outcome == Outcome::Wrong && case.stopped.is_some();
+        self.diagnosis.is_excuse() && !self.cases.iter().any(is_early)
+    }
+
+    /// Whether nothing could be judged at all.
+    pub fn is_empty(&self) -> bool {
+        let is_judged = |case: &CaseReport| {
+            !matches!(
+                case.outcome,
+                Outcome::Skipped { .. } | Outcome::CannotTell | Outcome::NothingShown
+            )
+        };
+        !self.cases.iter().any(is_judged)
+    }
+
+    /// Whether anything is wrong.
+    pub fn is_wrong(&self) -> bool {
+        let is_excused = self.is_excused();
+        self.echo == Some(false)
+            || self.cases.iter().any(|case| match case.outcome {
+                Outcome::Wrong => !is_excused,
+                ref outcome => outcome.is_wrong(),
+            })
+    }
+
+    /// The faults, each with its case.
+    pub fn faults(&self) -> impl Iterator<Item = (&CaseReport, &Judged)> {
+        self.cases.iter().flat_map(|case| {
+            let values = case.judgement.iter().flat_map(|judgement| &judgement.values);
+            values
+                .filter(|value| matches!(value.finding, Finding::Fault | Finding::NotFinite))
+                .map(move |value| (case, value))
+        })
+    }
+}
