@@ -17,6 +17,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         modes: vec![mode],
         filters: vec![Filter::kalman()],
         interaction: Interaction::Imm,
+        angles: vec![],
         chain: vec![vec![1.0]],
         sensor: Sensor::Linear(matrix![1.0]),
         measurement_noise: matrix![1.0],

@@ -39,6 +39,7 @@ fn filter(sensor: Sensor<f64, U4, U2>, noise: [f64; 2], kind: Filter<f64, U4, U2
         measurement_noise: SMatrix::from_diagonal(&SVector::from(noise)),
         filters: vec![kind],
         interaction: Interaction::Imm,
+        angles: vec![],
     };
     let estimate = Gaussian {
         mean: vector![15000.0, -180.0, 1000.0, 200.0],

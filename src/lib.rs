@@ -28,6 +28,7 @@
 //!     measurement_noise: matrix![1.0],
 //!     filters: vec![Filter::kalman()],
 //!     interaction: Interaction::Imm,
+//!     angles: vec![],
 //! };
 //! let at = |x: f64| Gaussian { mean: vector![x], covariance: matrix![1.0] };
 //! let initial = Initial { modes: vec![at(1.0), at(3.0)], mode_probabilities: vec![0.5, 0.5] };

@@ -6,7 +6,7 @@
 
 use immaculate::imm::Quantity;
 use immaculate::oracle::check::{Report, Selection, check};
-use immaculate::oracle::problem::{MeasurementFile, ProblemFile};
+use immaculate::oracle::problem::{FORMAT, MeasurementFile, ProblemFile};
 use immaculate::oracle::subject::{Answer, Broken, Ready, Subject};
 use immaculate::oracle::trace::Trace;
 use immaculate::report::check::text;
@@ -50,6 +50,7 @@ impl Subject for Example {
         Ok(Ready {
             name: "example in Rust".into(),     // CHANGE HERE
             kinds: Some(vec!["kalman".into()]), // CHANGE HERE: which filters there are
+            formats: Some(vec![FORMAT.into()]), // F and Q are the same in every step here
             validates: false,
             ..Ready::default()
         })

@@ -513,6 +513,7 @@ fn at_run_time(n: usize, m: usize, is_polar: bool) -> (Problem<f64, Dyn, Dyn>, I
         modes: vec![mode("one"), mode("two"), mode("three")],
         filters: vec![Filter::points(rule()), measured, Filter::points(rule())],
         interaction: Interaction::Imm,
+        angles: vec![],
         chain: vec![vec![0.5, 0.25, 0.25]; 3],
         sensor: if is_polar { polar } else { linear },
         measurement_noise: DMatrix::identity(m, m),
@@ -1192,6 +1193,7 @@ fn a_conversion_needs_one_range_one_bearing_and_their_variances() {
             measurement_noise: Matrix3::identity(),
             filters: vec![Filter::converted(Conversion::Standard)],
             interaction: Interaction::Imm,
+            angles: vec![],
         };
         let refused = Imm::new(problem, &scene.initial);
         assert_eq!(refused.err(), Some(InvalidProblem::NotRangeAndBearing));
@@ -1202,6 +1204,18 @@ fn a_conversion_needs_one_range_one_bearing_and_their_variances() {
         scene.problem.measurement_noise = Matrix2::from_diagonal(&vector![1600.0, 49e-6]);
         scene.problem.measurement_noise[(zero, zero)] = 0.0;
         assert_eq!(refused(&scene), "`R` is not positive definite (liu2017 (19))");
+    }
+}
+
+#[test]
+fn angles_are_entries_of_the_state_each_named_once() {
+    for (angles, index) in [(vec![4], 4), (vec![1, 3, 1], 1)] {
+        let mut scene = polar_scene("cubature-3");
+        scene.problem.angles = angles;
+        assert_eq!(
+            scene.filter().err().unwrap().to_string(),
+            format!("`angles` names entry {index} of a state of 4; it is not there, or named twice")
+        );
     }
 }
 
@@ -1599,6 +1613,7 @@ fn any_problem() -> impl Strategy<Value = (Problem<f64, U2, U2>, Initial<f64, U2
                     modes,
                     filters,
                     interaction,
+                    angles: Vec::new(),
                     chain,
                     sensor,
                     measurement_noise,
@@ -1773,6 +1788,7 @@ fn problem_test(error: &InvalidProblem) -> &'static str {
         InvalidProblem::OtherKind => "a_filter_does_not_go_on_with_gains_of_the_other_kind",
         InvalidProblem::CovarianceGiven { .. } => "a_filter_with_fixed_gains_has_no_covariance",
         InvalidProblem::RuleLengths { .. } => "a_rule_has_one_weight_a_point",
+        InvalidProblem::Angle { .. } => "angles_are_entries_of_the_state_each_named_once",
         InvalidProblem::TwoConversions => "all_modes_that_convert_do_it_in_one_way",
         InvalidProblem::NotRangeAndBearing | InvalidProblem::CorrelatedNoise => {
             "a_conversion_needs_one_range_one_bearing_and_their_variances"

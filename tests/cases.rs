@@ -14,7 +14,7 @@ use immaculate::imm::{Failure, Quantity};
 use immaculate::number::Real;
 use immaculate::oracle::case::{self, Case, Expected};
 use immaculate::oracle::flags::FLAGS;
-use immaculate::oracle::problem::{FilterFile, MeasurementFile, ProblemFile, Rows};
+use immaculate::oracle::problem::{FilterFile, MeasurementFile, ModeFile, ProblemFile, Rows};
 use immaculate::oracle::trace::Trace;
 use published::write::write;
 use published::{all, rejected};
@@ -271,6 +271,8 @@ fn flags_of_filters_and_angles_are_true() {
         let is_linear = matches!(problem.measurement, MeasurementFile::Linear { .. });
         let draws = |filter: &FilterFile| matches!(filter, FilterFile::Cubature { .. } | FilterFile::Unscented { .. });
         let has_points = (0..problem.modes.len()).any(|mode| draws(problem.filter_of(mode)));
+        let is_matrix = |mode: &ModeFile| mode.models.formulas.is_none() && mode.models.motion.is_none();
+        let moves_linearly = problem.modes.iter().all(is_matrix);
         let is_extended = matches!(problem.filter, FilterFile::Extended {});
         let is_fixed = matches!(problem.filter, FilterFile::FixedGain { .. });
         assert_eq!(has(&problem, "fixed-gain"), is_fixed, "{id}");
@@ -278,10 +280,9 @@ fn flags_of_filters_and_angles_are_true() {
         assert_eq!(has(&problem, "converted"), is_converted, "{id}");
         assert_eq!(
             has(&problem, "as-kalman"),
-            is_linear && (has_points || is_extended),
+            is_linear && moves_linearly && (has_points || is_extended),
             "{id}"
         );
-        assert_eq!(has(&problem, "several-sensors"), !problem.sensors.is_empty(), "{id}");
         let is_same = |step: usize| {
             let entry = &problem.measurements[step];
             let keeps_length = entry.interval.is_none();
@@ -291,6 +292,8 @@ fn flags_of_filters_and_angles_are_true() {
                 && entry.noise.is_none()
                 && entry.transition.is_none()
         };
+        let has_angle = problem.conventions.state_angle_mean.is_some();
+        assert_eq!(has(&problem, "state-angle"), has_angle, "{id}");
         let changes = !(0..problem.measurements.len()).all(is_same);
         assert_eq!(has(&problem, "changing-steps"), changes, "{id}");
 

@@ -398,6 +398,7 @@ fn linear(noise_factor: f64, measurement_factor: f64) -> Model {
         measurement_noise: matrix![25.0, 5.0; 5.0, 16.0] * measurement_factor,
         filters: vec![Filter::kalman()],
         interaction: Interaction::Imm,
+        angles: vec![],
     }
 }
 

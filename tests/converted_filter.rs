@@ -321,6 +321,7 @@ fn six_states() -> (Problem<f64, U6, U2>, Initial<f64, U6>) {
         measurement_noise: Matrix2::from_diagonal(&vector![100.0, 3e-4]),
         filters: vec![Filter::points(RuleName::Unscented(None).rule().unwrap())],
         interaction: Interaction::Imm,
+        angles: vec![],
     };
     let estimate = |variances| Gaussian {
         mean: vector![-1000.0, 1000.0, 4.0, 3.0, 0.0, 0.0],

@@ -408,20 +408,20 @@ fn assert_sentence(sentence: &str) {
 fn answer_law(text: &str, dimensions: &Dimensions) -> bool {
     let mut is_read = false;
     if let Ok(value) = read_json(text) {
-        let answer = read_answer(&value, &dimensions);
+        let answer = read_answer(&value, dimensions);
         is_read |= answer.is_ok();
         answer
             .err()
             .iter()
             .for_each(|broken| assert_sentence(&broken.to_string()));
-        if let Ok(trace) = Trace::from_json(value.get("steps").unwrap_or(&Value::Null), &dimensions) {
-            assert_eq!(trace.check(&dimensions), Ok(()));
+        if let Ok(trace) = Trace::from_json(value.get("steps").unwrap_or(&Value::Null), dimensions) {
+            assert_eq!(trace.check(dimensions), Ok(()));
         }
         let _ = Ready::read(&value);
     }
-    match csv::read(text, "x", &dimensions) {
+    match csv::read(text, "x", dimensions) {
         Ok(trace) => {
-            assert_eq!(trace.check(&dimensions), Ok(()));
+            assert_eq!(trace.check(dimensions), Ok(()));
             is_read = true;
         }
         Err(invalid) => assert_sentence(&invalid.to_string()),

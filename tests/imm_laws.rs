@@ -1400,6 +1400,7 @@ impl<T: number::Real> AtRunTime<T> {
             modes: problem.modes.iter().map(mode).collect(),
             filters: problem.filters.iter().map(|filter| self.filter(filter)).collect(),
             interaction: problem.interaction,
+            angles: problem.angles.clone(),
             chain: problem.chain.iter().map(|row| self.list(row)).collect(),
             sensor: match &problem.sensor {
                 Sensor::Linear(h) => Sensor::Linear(self.matrix(h)),
@@ -1552,6 +1553,7 @@ fn sides_known_at_run_time_give_the_same_bits_with_eight_entries() {
             modes: modes.clone(),
             filters,
             interaction: Interaction::Imm,
+            angles: vec![],
             chain: vec![vec![0.9, 0.1], vec![0.2, 0.8]],
             sensor,
             measurement_noise: SMatrix::from_diagonal(&variances),

@@ -587,10 +587,6 @@ fn bad_formulas() -> Vec<(Value, &'static str)> {
             "problem.state: the name `x` is used twice",
         ),
         (
-            with(&turn, "/state/4", json!(["w", "rad", "angle"])),
-            "problem.state[4]: is an angle, and no filter here",
-        ),
-        (
             with(&turn, "/parameters", json!({})),
             "problem.modes[0].let[0][1]: column 3, at `w*T`: no step has a length `T`; give it in `parameters`, or with",
         ),

@@ -7,26 +7,19 @@ mod common;
 
 use common::program::immaculate;
 use immaculate::imm::Quantity;
-use immaculate::oracle::case;
 use immaculate::oracle::certify::{certified_as_far_as_it_goes, certify};
 use immaculate::oracle::check::{Outcome, Report, check_problems};
 use immaculate::oracle::diagnose::Diagnosis;
+use immaculate::oracle::judge::{self, Finding, Reference};
 use immaculate::oracle::problem::ProblemFile;
 use immaculate::oracle::run::run_in_doubles;
-use immaculate::oracle::subject::{Level, Planted};
+use immaculate::oracle::subject::{Level, Planted, Precision};
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
-fn published(id: &str) -> ProblemFile {
-    let case = case::all().unwrap().iter().find(|case| case.problem.id == id);
-    case.expect("a case of this name").problem.clone()
-}
-
-/// The published automotive problem under a name of its own.
+/// A car under a radar and a lidar.
 fn car() -> ProblemFile {
-    let mut problem = published("automotive.extended.run");
-    problem.id = "car".into();
-    problem
+    ProblemFile::read(include_str!("adapters/automotive.json")).unwrap()
 }
 
 fn verdict(problem: ProblemFile, variants: &[&str]) -> Report {
@@ -80,6 +73,45 @@ fn a_mistake_is_named_on_a_problem_of_its_own() {
             "{id} is among {variants:?}"
         );
     }
+}
+
+/// Every value of a step with a detection, off by a part in a million, is a fault of its own equation; a value in a Jacobian, too.
+#[test]
+fn every_value_that_is_a_little_off_is_a_fault() {
+    let problem = {
+        let mut problem = car();
+        problem.measurements.truncate(5);
+        problem
+    };
+    let (expected, _) = certified_as_far_as_it_goes(&problem).unwrap();
+    let reference = Reference::new(&problem, Some(&expected), &[], Precision::Double).unwrap();
+    let mut asked = 0;
+    for (step, quantity, mode) in expected.all_places().filter(|place| place.0 == 4) {
+        let Some(numbers) = expected.get(step, quantity, mode) else {
+            continue;
+        };
+        for index in 0..numbers.len() {
+            let unit = reference.scale.get(step, quantity, mode).unwrap()[index];
+            let mut off = numbers.clone();
+            off[index] += 1e-6 * unit;
+            let mut shown = expected.clone();
+            shown.set(step, quantity, mode, off);
+            let case = judge::Case {
+                problem: &problem,
+                shown: &shown,
+                reference: &reference,
+                precision: Precision::Double,
+            };
+            let values = case.judge(&[]).unwrap().values;
+            let first = values.iter().find(|value| value.finding == Finding::Fault);
+            let place = first.map(|value| (value.place, value.own.unwrap().index));
+            // Nothing that was computed before it depends on it; a covariance may be read by its other triangle.
+            let (found, entry) = place.unwrap_or_else(|| panic!("{quantity:?}[{index}] is no fault"));
+            assert_eq!((found, entry), ((step, quantity, mode), index));
+            asked += 1;
+        }
+    }
+    assert!(asked > 400, "{asked}");
 }
 
 /// An extended filter of one mode over so many steps, written without anything that speaks of modes.
@@ -216,6 +248,11 @@ fn what_is_wrong_with_sensors_is_said_with_the_place() {
             "/measurements/2/T",
             json!(-0.1),
             "problem.measurements[2].T: is -0.1; no step is shorter than 0",
+        ),
+        (
+            "/measurements/0/z",
+            json!([-20, 1, 3]),
+            "problem.measurements[0].z[0]: is -20, a negative range; a range is a distance",
         ),
         (
             "/measurements/0/z",

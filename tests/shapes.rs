@@ -137,6 +137,7 @@ where
             .collect(),
         filters: vec![immaculate::filter::Filter::kalman()],
         interaction: setup.problem.interaction,
+        angles: Vec::new(),
         chain: setup.problem.chain.clone(),
         sensor: immaculate::model::Sensor::Linear(of(&setup.problem.h(), m, n)),
         measurement_noise: of(&setup.problem.measurement_noise, m, m),

@@ -1113,6 +1113,7 @@ fn a_measurement_of_the_whole_state_bounds_the_mixed_covariances() {
             measurement_noise: r,
             filters: vec![Filter::kalman()],
             interaction: Interaction::Imm,
+            angles: vec![],
         };
         let estimate = Gaussian {
             mean: Vector2::zeros(),

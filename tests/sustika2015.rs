@@ -319,6 +319,7 @@ fn in_four_states(start: &Gaussian<f64, U6>, kappa: f64) -> Imm<f64, U4, U2> {
         measurement_noise: SMatrix::from_diagonal(&Vector2::from(MEASUREMENT_DEVIATIONS.map(|d| d * d))),
         filters: vec![Filter::points(unscented_in(U4, &1.0, &0.0, &kappa).unwrap())],
         interaction: Interaction::Imm,
+        angles: vec![],
     };
     let initial = Initial {
         modes: vec![Gaussian {

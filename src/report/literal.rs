@@ -107,13 +107,11 @@ impl Values<'_> {
             let texts: Vec<String> = numbers.iter().map(|number| format!("{number:?}")).collect();
             texts.join(" ")
         };
-        match self.rank {
-            0 => format!("{:?}", self.numbers[0]),
-            _ => {
-                let rows: Vec<String> = self.numbers.chunks(self.columns).map(row).collect();
-                format!("[{}]", rows.join("; "))
-            }
+        if self.rank == 0 {
+            return format!("{:?}", self.numbers[0]);
         }
+        let rows: Vec<String> = self.numbers.chunks(self.columns).map(row).collect();
+        format!("[{}]", rows.join("; "))
     }
 }
 
@@ -128,7 +126,7 @@ pub fn text(id: &str, trace: &Trace, certified: usize, language: Language) -> St
     text.push('\n');
     match language {
         Language::Python => {
-            text.push_str("expected = {}  # by step and name; by step, mode and name where each mode has its own\n")
+            text.push_str("expected = {}  # by step and name; by step, mode and name where each mode has its own\n");
         }
         Language::Matlab => text.push_str("expected = struct();\n"),
         Language::C | Language::Rust => {}

@@ -105,6 +105,7 @@ fn imm_problem(setting: &Setting) -> Problem<f64, U3, U1> {
         measurement_noise: Matrix1::new(setting.measurement_variance),
         filters: vec![Filter::kalman()],
         interaction: Interaction::Imm,
+        angles: vec![],
     }
 }
 

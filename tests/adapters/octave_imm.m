@@ -25,7 +25,7 @@ function octave_imm(problems, answers, form)
   files = dir(fullfile(problems, '*.problem.json'));
   for f = 1:numel(files)
     problem = jsondecode(fileread(fullfile(problems, files(f).name)));
-    if ~any(strcmp(kind_of(problem), ready.kinds))
+    if ~strcmp(problem.format, 'immaculate-problem/1') || ~any(strcmp(kind_of(problem), ready.kinds))
       continue
     end
     try

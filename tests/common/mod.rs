@@ -170,6 +170,7 @@ fn problem(sensor: Sensor<f64, U4, U2>, noise: [f64; 2]) -> Problem<f64, U4, U2>
         measurement_noise: SMatrix::from_diagonal(&SVector::from(noise)),
         filters: vec![Filter::kalman()],
         interaction: Interaction::Imm,
+        angles: vec![],
     }
 }
 

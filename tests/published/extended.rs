@@ -1,7 +1,7 @@
 //! Extended filters, several sensors, and steps that differ: problems of format 2.
 //!
-//! After this file the reader knows the scenes of the papers' filters once more with Jacobians, a turn whose rate is in the state, and a car
-//! that is seen by two sensors at irregular times.
+//! After this file the reader knows the scenes of the papers' filters once more with Jacobians, a turn whose rate is in the state, headings,
+//! and steps that differ.
 
 use super::draft::{Draft, covariance, map, rounded, rows};
 use super::scene::{PLANE_TRACK, RADAR_TRACK, plane, radar};
@@ -10,16 +10,7 @@ use serde_json::{Value, json};
 
 /// The problems of this file.
 pub fn all() -> Vec<ProblemFile> {
-    [
-        single(),
-        turns(),
-        crossings(),
-        chains(),
-        numbers(),
-        steps(),
-        vec![automotive()],
-    ]
-    .concat()
+    [single(), turns(), crossings(), chains(), numbers(), steps(), headings()].concat()
 }
 
 /// A draft with extended filters.
@@ -310,7 +301,75 @@ fn steps() -> Vec<ProblemFile> {
     )]
 }
 
-/// A car under a radar and a lidar.
-fn automotive() -> ProblemFile {
-    serde_json::from_str(include_str!("automotive.json")).expect("a problem of the program")
+/// A heading in the state, near ±π: two modes that are on one side and on the other.
+fn headings() -> Vec<ProblemFile> {
+    let heading = |id: &str, filter: Value, more: &[&str], about: &str| {
+        let flags = [
+            "sequence",
+            "missed-detection",
+            "formulas",
+            "state-angle",
+            "spread",
+            "full-correlation",
+        ];
+        let flags = [&flags[..], more].concat();
+        let first = covariance(&[2.0, 1.5, 0.8, 0.3], &[0.25, -0.2, 0.15, 0.3, 0.1, -0.25]);
+        let second = covariance(&[1.6, 2.2, 1.1, 0.4], &[-0.3, 0.2, 0.25, -0.15, 0.3, 0.2]);
+        let q = json!([
+            ["0.3*T", 0, 0, 0],
+            [0, "0.2*T", 0, 0],
+            [0, 0, "0.5*T", 0],
+            [0, 0, 0, "q*T"]
+        ]);
+        let motion = |heading: &str| json!(["x + T*v*cos(psi)", "y + T*v*sin(psi)", "v", heading]);
+        let problem = json!({
+            "format": FORMAT_2,
+            "id": id,
+            "about": about,
+            "flags": flags,
+            "state": [["x", "m"], ["y", "m"], ["v", "m/s"], ["psi", "rad", "angle"]],
+            "parameters": { "T": 0.8 },
+            "modes": [
+                { "name": "straight", "f": motion("psi"), "Q": q, "parameters": { "q": 0.01 } },
+                { "name": "left", "f": motion("psi + T*rate"), "Q": q, "parameters": { "q": 0.04, "rate": 0.25 } }
+            ],
+            "measurement": { "kind": "linear", "H": [[1, 0, 0, 0], [0, 1, 0, 0]] },
+            "R": covariance(&[0.9, 0.7], &[0.2]),
+            "filter": filter,
+            "transition": [[0.9, 0.1], [0.25, 0.75]],
+            "initial": {
+                "mode_probabilities": [0.6, 0.4],
+                "modes": [
+                    { "mean": [20, 3, 6, 3.05], "covariance": first },
+                    { "mean": [20.5, 2.6, 5.5, -3.0], "covariance": second }
+                ]
+            },
+            "conventions": {
+                "square_root": "cholesky-lower", "angle_mean": "centre-point", "first_step": "mixed", "log_likelihood": "full",
+                "state_angle_mean": "reference"
+            },
+            "measurements": [
+                { "step": 1, "z": [15.4, 3.1] },
+                { "step": 2, "z": [10.2, 2.4] },
+                { "step": 3, "z": null },
+                { "step": 4, "z": [1.9, 0.2] },
+                { "step": 5, "z": [-1.4, -2.1] }
+            ]
+        });
+        serde_json::from_value(problem).expect("a problem of the program")
+    };
+    vec![
+        heading(
+            "heading.extended",
+            json!({ "kind": "extended" }),
+            &[],
+            "The heading is in the state, and the modes' are on either side of the cut at pi: mixed and combined as numbers they point backwards.",
+        ),
+        heading(
+            "heading.unscented",
+            json!({ "kind": "unscented", "alpha": 1, "beta": 0, "kappa": -1 }),
+            &["negative-weight"],
+            "The steps of heading.extended with points, whose headings lie on either side of the cut, too.",
+        ),
+    ]
 }

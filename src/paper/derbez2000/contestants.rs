@@ -223,6 +223,7 @@ impl CoordinateSetup {
             measurement_noise: Matrix1::new(measurement_variance),
             filters: vec![Filter::kalman()],
             interaction: Interaction::Imm,
+            angles: vec![],
         }
     }
 

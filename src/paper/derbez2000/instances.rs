@@ -132,6 +132,7 @@ pub fn growing_filter() -> Result<Imm<f64, U3, U1>, crate::imm::InvalidProblem> 
         measurement_noise: models[0].measurement_noise,
         filters: vec![Filter::kalman()],
         interaction: Interaction::Imm,
+        angles: vec![],
     };
     Imm::new(problem, &identities(2))
 }
@@ -163,6 +164,7 @@ fn coordinate<T: Field>(noise_variances: &[T; 2], measurement_variance: T) -> Pr
         measurement_noise: Matrix1::new(measurement_variance),
         filters: vec![Filter::kalman()],
         interaction: Interaction::Imm,
+        angles: vec![],
     }
 }
 

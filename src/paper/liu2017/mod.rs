@@ -249,6 +249,7 @@ fn problem(deviations: &Vector2<f64>) -> Problem<f64, U4, U2> {
         measurement_noise: Matrix2::from_diagonal(&deviations.map(|deviation| deviation * deviation)),
         filters: vec![Filter::kalman()],
         interaction: Interaction::Imm,
+        angles: vec![],
     }
 }
 

@@ -167,6 +167,7 @@ impl RadarSetup {
             ],
             filters: vec![filter],
             interaction: Interaction::Imm,
+            angles: vec![],
             chain: TRANSITION.iter().map(|row| row.to_vec()).collect(),
             sensor: Sensor::Polar {
                 components: vec![PolarComponent::Range, PolarComponent::Bearing],

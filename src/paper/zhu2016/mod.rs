@@ -267,6 +267,7 @@ impl Builder {
             measurement_noise: nalgebra::Matrix2::from_diagonal(&variances),
             filters: vec![Filter::kalman()],
             interaction: Interaction::Imm,
+            angles: vec![],
         }
     }
 
