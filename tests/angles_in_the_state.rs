@@ -104,8 +104,8 @@ fn apart(a: f64, b: f64) -> f64 {
     (a - b - 2.0 * PI * turns).abs()
 }
 
-/// The heading of this scene goes on to grow: turned by about π it crosses the cut, in the estimates and in the points. Points of the fifth degree
-/// go through the sine as their rule does, whatever the angle: a turn of the plane is linear in x and y, and shifts the heading.
+/// The heading of this scene goes on to grow: turned by about π it crosses the cut, in the estimates and in the points. Points of the fifth
+/// degree go through the sine as their rule does, whatever the angle: a turn of the plane is linear in x and y, and shifts the heading.
 #[test]
 fn the_answer_does_not_depend_on_where_the_heading_is_cut() {
     for filter in filters() {

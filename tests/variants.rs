@@ -677,7 +677,7 @@ fn heading(filter: Filter<f64, Dyn, Dyn>) -> Setup<f64> {
     h[(1, 1)] = 1.0;
     let mut setup = generic(4, 3, Sensor::Linear(h), filter);
     for (j, mode) in setup.problem.modes.iter_mut().enumerate() {
-        // Straight on against the x-axis, whatever the heading, which turns by itself: points of a linear motion have the means of matrices.
+        // Straight on, whatever the heading, which turns by itself: points of a linear motion have the means of matrices.
         let Motion::Linear(f) = &mut mode.motion else {
             panic!("a matrix")
         };

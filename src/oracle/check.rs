@@ -242,29 +242,34 @@ impl Question<'_> {
             Self::Own { expected, .. } => expected,
         }
     }
+
+    /// Whether a program with these filters and formats is asked it. A problem of the user is asked in whatever format it has.
+    fn is_for(&self, ready: &Ready) -> bool {
+        let is_known = |kind: &str| {
+            ready
+                .kinds
+                .as_ref()
+                .is_none_or(|kinds| kinds.iter().any(|known| known == kind))
+        };
+        let is_read = match self {
+            Self::Own { .. } => true,
+            Self::Published(case) => {
+                let formats = ready.formats.as_ref();
+                formats.is_none_or(|formats| formats.contains(&case.problem.format))
+            }
+        };
+        match self.expected() {
+            Expected::Trace(_) => is_read && self.problem().kinds().into_iter().all(is_known),
+            Expected::Rejection(_) => ready.validates,
+        }
+    }
 }
 
 /// Asks a program, and judges its answers.
 fn ask(subject: &mut dyn Subject, questions: &[Question], progress: &dyn Fn(&str)) -> Result<Report, NotMade> {
     let ready = subject.start()?;
     let conventions = declared(&ready)?;
-    // A problem of the user is asked in whatever format it has.
-    let is_read = |question: &Question| match question {
-        Question::Own { .. } => true,
-        Question::Published(case) => {
-            let formats = ready.formats.as_ref();
-            formats.is_none_or(|formats| formats.contains(&case.problem.format))
-        }
-    };
-    let has = |question: &&Question| {
-        let kinds = ready.kinds.as_ref();
-        let is_known = |kind: &str| kinds.is_none_or(|kinds| kinds.iter().any(|known| known == kind));
-        match question.expected() {
-            Expected::Trace(_) => is_read(question) && question.problem().kinds().into_iter().all(is_known),
-            Expected::Rejection(_) => ready.validates,
-        }
-    };
-    let asked: Vec<&Question> = questions.iter().filter(has).collect();
+    let asked: Vec<&Question> = questions.iter().filter(|question| question.is_for(&ready)).collect();
     let mut answered = Vec::new();
     let mut cases = Vec::new();
     for question in &asked {
@@ -305,28 +310,35 @@ fn ask(subject: &mut dyn Subject, questions: &[Question], progress: &dyn Fn(&str
         evidence.push(of_beginning);
     }
     let diagnosis = diagnose(&evidence, &conventions)?;
+    let traces: Vec<&Trace> = answered.iter().map(|(_, _, (shown, _))| shown).collect();
+    let hidden = never_shown(&asked, &traces);
+    Ok(Report {
+        echo: ready.echo.as_ref().map(|echo| *echo == echoed()),
+        not_asked: questions.len() - asked.len(),
+        hidden,
+        ready,
+        cases,
+        diagnosis,
+        remarks,
+    })
+}
+
+/// The quantities that some problem has and no answer shows.
+fn never_shown(asked: &[&Question], traces: &[&Trace]) -> Vec<Quantity> {
     let exists = |quantity: &Quantity| {
         asked.iter().any(|question| {
             let problem = question.problem();
             (0..problem.modes.len()).any(|mode| quantity.exists(|needed| problem.has(needed, mode)))
         })
     };
-    let hidden = Quantity::ALL.into_iter().filter(exists).filter(|quantity| {
-        !answered.iter().any(|(_, _, (shown, _))| {
-            shown.all_places().any(|(step, shown_quantity, mode)| {
-                shown_quantity == *quantity && shown.get(step, shown_quantity, mode).is_some()
-            })
+    let is_shown = |quantity: &Quantity| {
+        traces.iter().any(|shown| {
+            let mut places = shown.all_places();
+            places.any(|(step, own, mode)| own == *quantity && shown.get(step, own, mode).is_some())
         })
-    });
-    Ok(Report {
-        echo: ready.echo.as_ref().map(|echo| *echo == echoed()),
-        not_asked: questions.len() - asked.len(),
-        hidden: hidden.collect(),
-        ready,
-        cases,
-        diagnosis,
-        remarks,
-    })
+    };
+    let there = Quantity::ALL.into_iter().filter(exists);
+    there.filter(|quantity| !is_shown(quantity)).collect()
 }
 
 /// What can be said of one answer, and what is shown with its reference if there is something to explain.

@@ -45,6 +45,19 @@ fn deviation(variance: f64) -> f64 {
     if variance == 0.0 { 1.0 } else { variance.sqrt() }
 }
 
+/// The products of the units of rows and columns.
+fn outer(rows: &[f64], columns: &[f64]) -> Vec<f64> {
+    rows.iter()
+        .flat_map(|row| columns.iter().map(move |column| row * column))
+        .collect()
+}
+
+/// What maps deviations of the columns to deviations of the rows.
+fn ratio(rows: &[f64], columns: &[f64]) -> Vec<f64> {
+    let inverse: Vec<f64> = columns.iter().map(|deviation| 1.0 / deviation).collect();
+    outer(rows, &inverse)
+}
+
 fn scale(
     trace: &Trace,
     corrections: Option<&[f64]>,
@@ -62,16 +75,6 @@ fn scale(
             (None, Some(corrections)) => corrections.to_vec(),
             (None, None) => vec![1.0; size],
         }
-    };
-    let outer = |rows: &[f64], columns: &[f64]| -> Vec<f64> {
-        rows.iter()
-            .flat_map(|row| columns.iter().map(move |column| row * column))
-            .collect()
-    };
-    // What maps deviations of the columns to deviations of the rows.
-    let ratio = |rows: &[f64], columns: &[f64]| -> Vec<f64> {
-        let inverse: Vec<f64> = columns.iter().map(|deviation| 1.0 / deviation).collect();
-        outer(rows, &inverse)
     };
     let square = |covariance: Q, size: usize| {
         let deviations = deviations(covariance, size);

@@ -125,6 +125,11 @@ impl ProblemFile {
             }
         }
         check_matrix("problem.transition", &self.transition, r, r)?;
+        self.check_initial_shapes()
+    }
+
+    fn check_initial_shapes(&self) -> Result<(), Invalid> {
+        let (n, r) = (self.state.len(), self.modes.len());
         check_length("problem.initial.modes", self.initial.modes.len(), r)?;
         check_length(
             "problem.initial.mode_probabilities",

@@ -1,7 +1,7 @@
 //! Variants of the extended filter: its Jacobians, and what they are taken for.
 //!
-//! After this file the reader knows where a Jacobian is evaluated by mistake, how it is written down wrongly, and that a Jacobian is not the
-//! function.
+//! After this file the reader knows where a Jacobian is evaluated by mistake, how it is written down wrongly, and that a Jacobian is not
+//! the function.
 
 use super::super::setup::Setup;
 use crate::filter::extended::{measurement_jacobian, motion_jacobian};

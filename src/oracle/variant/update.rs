@@ -32,11 +32,7 @@ fn of_gain<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
         "update-from-the-mixed-covariance" => {
             if no_points {
                 setup.equations.gain = gain_of_mixed;
-                setup.equations.updated_covariance = |problem, _, now, j| {
-                    let rest = DMatrix::identity(problem.n().0, problem.n().0)
-                        - &now.gains[j] * &*measurement_matrix(problem, now, j);
-                    rest * &now.mixed[j].covariance
-                }
+                setup.equations.updated_covariance = |problem, _, now, j| rest_of_mixed(problem, now, j);
             }
         }
         // C (S − R)⁻¹
@@ -173,6 +169,13 @@ fn gain_of_mixed<T: Real>(
     let (h, covariance) = (measurement_matrix(problem, now, j), &now.mixed[j].covariance);
     let s = kalman::innovation_covariance(&h, covariance, noise(problem, now, j));
     gain(&kalman::cross_covariance(covariance, &h), &s)
+}
+
+/// (I − K H) P⁰ʲ.
+fn rest_of_mixed<T: Real>(problem: &Problem<T, Dyn, Dyn>, now: &Step<T, Dyn, Dyn>, j: usize) -> DMatrix<T> {
+    let h = measurement_matrix(problem, now, j);
+    let identity = DMatrix::identity(problem.n().0, problem.n().0);
+    (identity - &now.gains[j] * &*h) * &now.mixed[j].covariance
 }
 
 /// C S⁻¹ with an S that must be positive definite.
