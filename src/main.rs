@@ -1,7 +1,8 @@
 //! The command line: the commands by name, what is printed, and the exit status; each command is a file of `cli`.
 //!
-//! Exit status: 0 when the command did what was asked, or nobody wanted to read on, 1 when its output could not be written or what it
-//! checked is wrong, 2 when its arguments or its input are wrong or name something that does not exist.
+//! Exit status: 0 when the command did what was asked, or nobody wanted to read on, 1 when its output could not be written, what it
+//! checked is wrong or a filter came to a step that it could not do, 2 when its arguments or its input are wrong or name something that
+//! does not exist.
 
 mod cli;
 
@@ -16,7 +17,7 @@ use std::process::ExitCode;
 #[derive(Parser)]
 #[command(version, about, arg_required_else_help = true)]
 #[command(
-    after_help = "Exit status: 0 done, 1 output could not be written or something that was checked is wrong, 2 the arguments or the input are wrong or name something that does not exist. A reader that stops reading is no error."
+    after_help = "Exit status: 0 done, 1 output could not be written, something that was checked is wrong, or a filter came to a step it could not do, 2 the arguments or the input are wrong or name something that does not exist. A reader that stops reading is no error."
 )]
 pub struct Cli {
     #[command(subcommand)]

@@ -6,6 +6,7 @@ use super::{Done, Refusal, json_text, read_file};
 use clap::Args;
 use immaculate::oracle::certify::{certified_as_far_as_it_goes, certified_decimals};
 use immaculate::oracle::csv;
+use immaculate::oracle::invalid::Invalid;
 use immaculate::oracle::problem::ProblemFile;
 use immaculate::oracle::run::run_in_doubles;
 use immaculate::oracle::trace::{FORMAT, numbers_as_json};
@@ -50,22 +51,7 @@ pub fn run(arguments: &TraceArguments) -> Result<Done, Refusal> {
         return Ok(literal::text(&problem.id, &trace, certified, language).into());
     }
     let Some(digits) = arguments.digits else {
-        let (values, failure) = run_in_doubles(&problem).map_err(|error| wrong(&error))?;
-        if arguments.csv {
-            return Ok(csv::write(&problem.id, &values, "", |_, _| String::new()).into());
-        }
-        if arguments.json {
-            let steps = values.steps_as_json();
-            let value = json!({ "format": FORMAT, "id": problem.id, "steps": steps, "error": failure });
-            return Ok(json_text(&value).into());
-        }
-        let texts = values.map(|_, numbers| numbers.iter().map(|number| format!("{number:?}")).collect());
-        let mut text = report::trace::text(&problem, &texts);
-        if let Some(failure) = failure {
-            text.push_str(&failure);
-            text.push('\n');
-        }
-        return Ok(text.into());
+        return in_doubles(arguments, &problem).map_err(|error| wrong(&error));
     };
     let (decimals, bits) = certified_decimals(&problem, digits).map_err(|error| wrong(&error))?;
     if arguments.json {
@@ -75,4 +61,21 @@ pub fn run(arguments: &TraceArguments) -> Result<Done, Refusal> {
     }
     let text = report::trace::text(&problem, &decimals);
     Ok(format!("{text}{digits} digits of every value, proven with {bits} bits\n").into())
+}
+
+/// The run in doubles. One that stops before its end is shown as far as it came, with exit status 1.
+fn in_doubles(arguments: &TraceArguments, problem: &ProblemFile) -> Result<Done, Invalid> {
+    let (values, failure) = run_in_doubles(problem)?;
+    let status = u8::from(failure.is_some());
+    let text = if arguments.csv {
+        csv::write(&problem.id, &values, "", |_, _| String::new())
+    } else if arguments.json {
+        let steps = values.steps_as_json();
+        json_text(&json!({ "format": FORMAT, "id": problem.id, "steps": steps, "error": failure }))
+    } else {
+        let texts = values.map(|_, numbers| numbers.iter().map(|number| format!("{number:?}")).collect());
+        let end = failure.map_or_else(String::new, |failure| failure + "\n");
+        report::trace::text(problem, &texts) + &end
+    };
+    Ok(Done { text, status })
 }
