@@ -237,7 +237,7 @@ fn covariances_are_symmetric_to_the_last_bit() {
 
 /// Both eigenvalue signs, and a matrix whose diagonal hides that it is indefinite.
 #[test]
-fn covariances_are_positive_definite_and_process_noises_semidefinite() {
+fn covariances_are_positive_semidefinite() {
     let spoils: [(Spoil, &str); 7] = [
         (
             |scene| scene.problem.modes[1].noise[(2, 2)] = -1.0,
@@ -268,8 +268,8 @@ fn covariances_are_positive_definite_and_process_noises_semidefinite() {
             "`modes[1].Q` is not positive semidefinite (liu2017 (17))",
         ),
         (
-            |scene| scene.problem.measurement_noise[(1, 1)] = 0.0,
-            "`R` is not positive definite (liu2017 (19))",
+            |scene| scene.problem.measurement_noise[(1, 1)] = -1.0,
+            "`R` is not positive semidefinite (liu2017 (19))",
         ),
         (
             |scene| {
@@ -277,11 +277,11 @@ fn covariances_are_positive_definite_and_process_noises_semidefinite() {
                 scene.initial.modes[2].covariance[(0, 1)] = 5000.0;
                 scene.initial.modes[2].covariance[(1, 0)] = 5000.0;
             },
-            "`initial.modes[2].covariance` is not positive definite (zhu2016 (56))",
+            "`initial.modes[2].covariance` is not positive semidefinite (zhu2016 (56))",
         ),
         (
-            |scene| scene.initial.modes[0].covariance.fill(0.0),
-            "`initial.modes[0].covariance` is not positive definite (zhu2016 (56))",
+            |scene| scene.initial.modes[0].covariance[(0, 0)] = -1.0,
+            "`initial.modes[0].covariance` is not positive semidefinite (zhu2016 (56))",
         ),
     ];
     assert_sentences(linear_scene, &spoils);
@@ -879,8 +879,8 @@ fn a_filter_keeps_its_problem_when_it_is_to_go_on_with_a_wrong_one() {
             "`modes[1].Q` is not positive semidefinite (liu2017 (17))",
         ),
         (
-            |scene| scene.problem.measurement_noise[(1, 1)] = 0.0,
-            "`R` is not positive definite (liu2017 (19))",
+            |scene| scene.problem.measurement_noise[(1, 1)] = -1.0,
+            "`R` is not positive semidefinite (liu2017 (19))",
         ),
         (
             |scene| scene.problem.sensor = polar([0, 2], [0.0, 0.0]),
@@ -1198,12 +1198,14 @@ fn a_conversion_needs_one_range_one_bearing_and_their_variances() {
         let refused = Imm::new(problem, &scene.initial);
         assert_eq!(refused.err(), Some(InvalidProblem::NotRangeAndBearing));
     }
-    // Zero noises are no covariance.
+    // A noise may be zero; a variance below it is none.
     let mut scene = converted_scene(Conversion::Standard, [0.0, 0.0]);
-    for zero in [0, 1] {
+    for place in [0, 1] {
         scene.problem.measurement_noise = Matrix2::from_diagonal(&vector![1600.0, 49e-6]);
-        scene.problem.measurement_noise[(zero, zero)] = 0.0;
-        assert_eq!(refused(&scene), "`R` is not positive definite (liu2017 (19))");
+        scene.problem.measurement_noise[(place, place)] = 0.0;
+        assert!(scene.try_run().is_ok());
+        scene.problem.measurement_noise[(place, place)] = -1e-6;
+        assert_eq!(refused(&scene), "`R` is not positive semidefinite (liu2017 (19))");
     }
 }
 
@@ -1781,7 +1783,7 @@ fn problem_test(error: &InvalidProblem) -> &'static str {
         InvalidProblem::NegativeProbability { .. } => "probabilities_are_not_negative",
         InvalidProblem::NotNormalised { .. } => "rows_of_the_transition_matrix_and_initial_probabilities_sum_to_one",
         InvalidProblem::NotSymmetric { .. } => "covariances_are_symmetric_to_the_last_bit",
-        InvalidProblem::NotPositive { .. } => "covariances_are_positive_definite_and_process_noises_semidefinite",
+        InvalidProblem::NotPositive { .. } => "covariances_are_positive_semidefinite",
         InvalidProblem::NotLinear { .. } => "the_kalman_filter_has_linear_measurements_only",
         InvalidProblem::NothingToDrawFrom => "a_filter_with_a_given_gain_draws_no_points",
         InvalidProblem::SomeGiven => "gains_are_given_to_all_modes_or_to_none",

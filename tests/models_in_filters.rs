@@ -687,7 +687,7 @@ fn bad_measurements() -> Vec<(Value, &'static str)> {
         ),
         (
             with(&turn, "/measurements/1/R", json!([[1, 0], [0, -1]])),
-            "problem.measurements[1]: changes the problem so that `R` is not positive definite",
+            "problem.measurements[1]: changes the problem so that `R` is not positive semidefinite",
         ),
         (
             with(&turn, "/measurements/1/z", json!([112, 44])),

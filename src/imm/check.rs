@@ -10,7 +10,7 @@ use crate::matrix::{
 };
 use crate::model::Sensor;
 use crate::model::function::Function;
-use crate::model::motion::{Mode, Motion};
+use crate::model::motion::Motion;
 use crate::number::{Field, Real};
 use crate::rule::Rule;
 use nalgebra::allocator::Allocator;
@@ -67,9 +67,9 @@ where
         self.check_chain()?;
         for (j, mode) in self.modes.iter().enumerate() {
             self.check_motion(j, &mode.motion)?;
-            check_process_noise(&mode.noise, format!("modes[{j}].Q"))?;
+            check_semidefinite(&mode.noise, format!("modes[{j}].Q"), "liu2017 (17)")?;
         }
-        check_covariance(&self.measurement_noise, "R".into(), "liu2017 (19)")?;
+        check_semidefinite(&self.measurement_noise, "R".into(), "liu2017 (19)")?;
         self.check_sensor()?;
         self.check_angles()?;
         self.check_filters()?;
@@ -83,7 +83,7 @@ where
             check_finite(&estimate.mean, field, "zhu2016 (55)")?;
             let field = format!("initial.modes[{j}].covariance");
             if self.has_covariances() {
-                check_initial_covariance(&estimate.covariance, &self.modes[j], field)?;
+                check_semidefinite(&estimate.covariance, field, "zhu2016 (56)")?;
             } else if estimate.covariance.iter().any(|entry| !entry.is_zero()) {
                 return Err(InvalidProblem::CovarianceGiven { field });
             }
@@ -417,29 +417,16 @@ where
     })
 }
 
-/// An initial covariance is positive definite; an entry of the state that the mode lacks may have a row and a column of zeros.
-fn check_initial_covariance<T: Real, D: Dim>(
+/// A covariance of what may be known exactly, or of noise that there need not be: of an initial estimate, Q and R. Whether S is definite
+/// shows at every step.
+fn check_semidefinite<T: Real, D: Dim>(
     matrix: &OMatrix<T, D, D>,
-    mode: &Mode<T, D>,
     field: String,
+    equation: &'static str,
 ) -> Result<(), InvalidProblem>
 where
     Shapes: Holds<D>,
 {
-    let mut of_other_entries = matrix.clone();
-    for entry in (0..matrix.nrows()).filter(|&entry| mode.lacks(entry)) {
-        if matrix.row(entry).iter().chain(&matrix.column(entry)).all(T::is_zero) {
-            of_other_entries[(entry, entry)] = T::one();
-        }
-    }
-    check_covariance(&of_other_entries, field, "zhu2016 (56)")
-}
-
-fn check_process_noise<T: Real, D: Dim>(matrix: &OMatrix<T, D, D>, field: String) -> Result<(), InvalidProblem>
-where
-    Shapes: Holds<D>,
-{
-    let equation = "liu2017 (17)";
     check_symmetric(matrix, &field, equation)?;
     if is_positive_semidefinite(matrix) {
         return Ok(());

@@ -63,7 +63,7 @@ pub enum InvalidProblem {
         /// The equation that needs it.
         equation: &'static str,
     },
-    /// A covariance is not positive definite, or a process noise not positive semidefinite.
+    /// A covariance is not positive semidefinite, or that of a given innovation not definite.
     #[error("`{field}` is not positive {kind} ({equation})")]
     NotPositive {
         /// The field.

@@ -19,7 +19,7 @@ pub enum Class {
     NotAProbability,
     /// A covariance that is not symmetric.
     NotSymmetric,
-    /// A covariance that is not positive definite.
+    /// A covariance that is not positive semidefinite, or one of innovations that is not definite.
     NotPositiveDefinite,
     /// A filter, rule, measurement or convention that does not exist.
     Unknown,
