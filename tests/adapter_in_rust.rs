@@ -87,7 +87,8 @@ impl Subject for Example {
         };
         let mut trace = Trace::empty(&problem.dimensions());
         for entry in &problem.measurements {
-            let step = imm.step(entry.z.as_deref());
+            let z: Vec<f64> = entry.entries().map(|(_, value)| value).collect();
+            let step = imm.step(entry.z.is_some().then_some(z.as_slice()));
             show(&mut trace, entry.step, &step, entry.z.is_some());
         }
         Answer::Steps { trace, error: None }

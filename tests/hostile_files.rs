@@ -357,7 +357,7 @@ fn change(problem: &mut ProblemFile, what: usize, at: Index, number: f64) {
         },
         _ => {
             if let Some(z) = problem.measurements[0].z.as_mut() {
-                z[0] = number;
+                z[0] = Some(number);
             }
         }
     }

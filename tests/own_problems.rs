@@ -7,6 +7,7 @@ mod common;
 
 use common::program::immaculate;
 use immaculate::imm::Quantity;
+use immaculate::oracle::case;
 use immaculate::oracle::certify::{certified_as_far_as_it_goes, certify};
 use immaculate::oracle::check::{Outcome, Report, check_problems};
 use immaculate::oracle::diagnose::Diagnosis;
@@ -219,6 +220,128 @@ fn a_defect_of_a_short_problem_has_the_place_that_was_written() {
         let error = ProblemFile::read(&file.to_string()).unwrap_err().to_string();
         assert!(error.contains(sentence), "{error}");
     }
+}
+
+/// Four steps of a target in the plane: what is measured, R, the filter, and the measurements.
+fn target(measurement: &Value, noise: &Value, filter: &Value, seen: &[Value]) -> Value {
+    let entry = |(index, z): (usize, &Value)| json!({ "step": index + 1, "z": z });
+    json!({
+        "format": "immaculate-problem/2",
+        "id": "target",
+        "state": ["x", "y"],
+        "F": [[1.1, 0.2], [-0.1, 0.9]],
+        "Q": [[1, 0.3], [0.3, 2]],
+        "measurement": measurement,
+        "R": noise,
+        "filter": filter,
+        "initial": { "mean": [3, 4], "covariance": [[2, 0.5], [0.5, 1]] },
+        "measurements": seen.iter().enumerate().map(entry).collect::<Vec<_>>()
+    })
+}
+
+/// z without its first entry is z of a sensor that does not have it, bit for bit, whatever the sensor and the filter.
+#[test]
+fn entries_that_are_missing_are_those_of_a_sensor_that_does_not_see_them() {
+    let (kalman, extended) = (json!({ "kind": "kalman" }), json!({ "kind": "extended" }));
+    let cubature = json!({ "kind": "cubature", "rule": "cubature-5" });
+    let unscented = json!({ "kind": "unscented", "alpha": 1, "beta": 2, "kappa": 1 });
+    let polar = |components: Value| json!({ "kind": "range-bearing", "components": components, "position": [0, 1], "sensor": [-1, 0] });
+    let formulas = |z: Value, h: Value| json!({ "kind": "formulas", "z": z, "h": h });
+    let bearing = json!(["bearing", "rad", "angle"]);
+    let sensors = [
+        (
+            json!({ "kind": "linear", "H": [[1, 0.5], [0.2, 1]] }),
+            json!({ "kind": "linear", "H": [[0.2, 1]] }),
+            vec![&kalman, &extended, &cubature, &unscented],
+        ),
+        (
+            polar(json!(["range", "bearing"])),
+            polar(json!(["bearing"])),
+            vec![&extended, &cubature, &unscented],
+        ),
+        (
+            formulas(json!(["square", bearing]), json!(["x*y", "atan2(y, x)"])),
+            formulas(json!([bearing]), json!(["atan2(y, x)"])),
+            vec![&extended, &cubature, &unscented],
+        ),
+    ];
+    let values = |problem: &Value| {
+        let problem = ProblemFile::read(&problem.to_string()).unwrap();
+        let (trace, failure) = run_in_doubles(&problem).unwrap();
+        assert_eq!(failure, None);
+        trace
+    };
+    for (whole, part, filters) in sensors {
+        for filter in filters {
+            let noise = json!([[0.5, 0.1], [0.1, 0.25]]);
+            let missing = target(&whole, &noise, filter, &[json!([null, 0.9]), json!([null, 0.8])]);
+            let unseen = target(&part, &json!([[0.25]]), filter, &[json!([0.9]), json!([0.8])]);
+            assert_eq!(values(&missing), values(&unseen), "{whole} {filter}");
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_missing_is_said() {
+    let linear = json!({ "kind": "linear", "H": [[1, 0], [0, 1]] });
+    let polar =
+        json!({ "kind": "range-bearing", "components": ["range", "bearing"], "position": [0, 1], "sensor": [0, 0] });
+    let noise = json!([[0.5, 0], [0, 0.25]]);
+    let kalman = json!({ "kind": "kalman" });
+    let converted = json!({ "kind": "converted", "conversion": "standard" });
+    let partial = [json!([1.5, null])];
+    for (mut problem, sentence) in [
+        (
+            target(&linear, &noise, &kalman, &[json!([null, null])]),
+            "problem.measurements[0].z: has no entry that is there; a step without a detection says null for all of it",
+        ),
+        (
+            target(&polar, &noise, &converted, &partial),
+            "problem.measurements[0].z: lacks an entry, and converted needs all of them",
+        ),
+        (
+            target(&linear, &noise, &kalman, &[json!([1.5])]),
+            "problem.measurements[0].z: has 1 entries where 2 are needed",
+        ),
+    ] {
+        let said = ProblemFile::read(&problem.to_string()).unwrap_err().to_string();
+        assert_eq!(said, sentence);
+        // Format 1 has no measurements with gaps.
+        problem["format"] = json!("immaculate-problem/1");
+        assert!(ProblemFile::read(&problem.to_string()).is_err());
+    }
+    let mut first = json!(case::all().unwrap()[0].problem);
+    first["measurements"][0]["z"] = json!([null, 1]);
+    let said = ProblemFile::read(&first.to_string()).unwrap_err().to_string();
+    assert!(
+        said.starts_with("problem.measurements[0].z: needs the format"),
+        "{said}"
+    );
+}
+
+/// What is known exactly needs no definite covariance, as long as the innovation has one.
+#[test]
+fn exact_estimates_and_measurements_are_filtered() {
+    let linear = json!({ "kind": "linear", "H": [[1, 0], [0, 1]] });
+    let kalman = json!({ "kind": "kalman" });
+    let mut problem = target(&linear, &json!([[0, 0], [0, 0.25]]), &kalman, &[json!([2, 3])]);
+    let run = |problem: &Value| {
+        let problem = ProblemFile::read(&problem.to_string()).unwrap();
+        run_in_doubles(&problem).unwrap()
+    };
+    let (trace, failure) = run(&problem);
+    assert_eq!(failure, None);
+    // What is measured exactly is known, but for the roundings of a gain.
+    let known = trace.get(1, Quantity::UpdatedMean, 0).unwrap()[0];
+    approx::assert_abs_diff_eq!(known, 2.0, epsilon = 8.0 * f64::EPSILON);
+    // Nothing is known and nothing moves: z has no variance at all.
+    problem["Q"] = json!([[0, 0], [0, 0]]);
+    problem["initial"]["covariance"] = json!([[0, 0], [0, 0]]);
+    let (_, failure) = run(&problem);
+    assert_eq!(
+        failure.unwrap(),
+        "step 1, mode `filter`, gain: the innovation covariance is not positive definite: pivot 1 of 2 is not positive"
+    );
 }
 
 #[test]

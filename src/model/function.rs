@@ -191,6 +191,26 @@ impl Function {
         })
     }
 
+    /// Some of the numbers that the function gives.
+    pub(super) fn only(&self, rows: &[usize]) -> Self {
+        let body = match &self.body {
+            Body::Matrix { matrix, offset } => Body::Matrix {
+                matrix: rows.iter().filter_map(|&row| matrix.get(row)).cloned().collect(),
+                offset: rows.iter().filter_map(|&row| offset.get(row)).cloned().collect(),
+            },
+            Body::Formulas {
+                formulas,
+                components,
+                parameters,
+            } => Body::Formulas {
+                formulas: formulas.only(rows),
+                components: *components,
+                parameters: parameters.clone(),
+            },
+        };
+        Self { body }
+    }
+
     /// How many components a state has.
     pub fn components(&self) -> usize {
         match &self.body {

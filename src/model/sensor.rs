@@ -14,7 +14,7 @@ use super::function::Function;
 use super::space::Space;
 use crate::matrix::{Holds, Shapes, rows};
 use crate::number::{Field, Real};
-use nalgebra::{Dim, OMatrix, OVector, U1};
+use nalgebra::{Dim, Dyn, OMatrix, OVector, U1};
 use std::sync::Arc;
 
 /// A component of a polar measurement.
@@ -268,6 +268,47 @@ where
             }
         }
         mean
+    }
+}
+
+impl<T: Real, N: Dim> Sensor<T, N, Dyn>
+where
+    Shapes: Holds<N, Dyn>,
+{
+    /// The sensor of a step in which only these components of z are there.
+    ///
+    /// Source: the rows of h(x); a component that is missing says nothing, whatever its noise has to do with that of the others.
+    ///
+    /// Example: a radar whose range is missing.
+    ///
+    /// ```
+    /// use immaculate::model::{PolarComponent::{Bearing, Range}, Sensor};
+    /// use nalgebra::{Dyn, U2, dvector, vector};
+    ///
+    /// let radar = Sensor::<f64, U2, Dyn>::Polar { components: vec![Range, Bearing], position: [0, 1], location: [0.0, 0.0] };
+    /// assert_eq!(radar.only(&[1]).of(&vector![3.0, 0.0]), dvector![0.0]);
+    /// ```
+    ///
+    /// Evidence: `entries_that_are_missing_are_those_of_a_sensor_that_does_not_see_them` (own_problems).
+    #[must_use]
+    pub fn only(&self, rows: &[usize]) -> Self {
+        match self {
+            Self::Linear(h) => Self::Linear(h.select_rows(rows)),
+            Self::Polar {
+                components,
+                position,
+                location,
+            } => Self::Polar {
+                components: rows.iter().filter_map(|&row| components.get(row)).copied().collect(),
+                position: *position,
+                location: location.clone(),
+            },
+            Self::Function { function, space, given } => Self::Function {
+                function: function.only(rows).into(),
+                space: space.only(rows).into(),
+                given: given.clone(),
+            },
+        }
     }
 }
 

@@ -112,6 +112,14 @@ impl Space {
         Ok(Self { components })
     }
 
+    /// The space of some of the components.
+    pub(super) fn only(&self, components: &[usize]) -> Self {
+        let chosen = components.iter().filter_map(|&index| self.components.get(index));
+        Self {
+            components: chosen.cloned().collect(),
+        }
+    }
+
     /// The components, in order.
     pub fn components(&self) -> &[Component] {
         &self.components

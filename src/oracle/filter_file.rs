@@ -32,6 +32,9 @@ const OTHER_KINDS: [&str; 6] = [
     "fixed-gain-unmixed",
 ];
 
+/// The families of filters, which differ in their equations and not only in a rule: [`FilterFile::family`].
+pub const FAMILIES: [&str; 6] = ["kalman", "extended", "cubature", "unscented", "converted", "fixed-gain"];
+
 /// The names of all kinds of filter, [`FilterFile::name`].
 pub fn kinds() -> impl Iterator<Item = &'static str> {
     OTHER_KINDS.into_iter().chain(RULES)
@@ -94,6 +97,18 @@ impl FilterFile {
             Self::Unscented { .. } => "unscented",
             Self::Converted { .. } => "converted",
             Self::FixedGain { mixing, .. } if mixing == UNMIXED => "fixed-gain-unmixed",
+            Self::FixedGain { .. } => "fixed-gain",
+        }
+    }
+
+    /// The family: the kind's word in a file.
+    pub fn family(&self) -> &'static str {
+        match self {
+            Self::Kalman {} => "kalman",
+            Self::Extended {} => "extended",
+            Self::Cubature { .. } => "cubature",
+            Self::Unscented { .. } => "unscented",
+            Self::Converted { .. } => "converted",
             Self::FixedGain { .. } => "fixed-gain",
         }
     }

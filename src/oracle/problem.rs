@@ -3,7 +3,7 @@
 //! After this file the reader knows the formats `immaculate-problem/1` and `/2` from the code's side (`spec/formats.md` is their
 //! description). Format 1 is format 2 without what [`super::models`] adds. What must be true of a file is in `well_formed`.
 
-pub use super::filter_file::{FilterFile, FixedGainFile, MIXINGS, RULES, UNMIXED, kinds};
+pub use super::filter_file::{FAMILIES, FilterFile, FixedGainFile, MIXINGS, RULES, UNMIXED, kinds};
 use super::invalid::{Class, Invalid};
 use super::models::{ComponentFile, ModeKeys, ModeModels, ModelParameters};
 use super::single;
@@ -326,7 +326,10 @@ impl ProblemFile {
     /// Entries of the state, of the measurement, modes, and steps.
     pub fn dimensions(&self) -> Dimensions {
         let sensors = self.sensors_at();
-        let of_step = |entry: &MeasurementAt| sensors[self.sensor_of(entry).unwrap_or(0)].noise.len();
+        let of_step = |entry: &MeasurementAt| match entry.rows() {
+            Some(rows) => rows.len(),
+            None => sensors[self.sensor_of(entry).unwrap_or(0)].noise.len(),
+        };
         Dimensions {
             n: self.state.len(),
             r: self.modes.len(),

@@ -4,7 +4,7 @@
 
 use super::bound::{Bound, Functions};
 use super::invalid::{Class, Invalid};
-use super::problem::{FilterFile, MeasurementFile, ModeFile, ProblemFile, Rows, UNMIXED};
+use super::problem::{FilterFile, MeasurementAt, MeasurementFile, ModeFile, ProblemFile, Rows, UNMIXED};
 use crate::filter::Filter;
 use crate::filter::fixed_gain::FixedGain;
 use crate::gaussian::Gaussian;
@@ -133,6 +133,10 @@ impl ProblemFile {
                 |rows| matrix(rows, number),
             ),
         });
+        let of_step = |entry: &MeasurementAt| {
+            let there: Vec<f64> = entry.entries().map(|(_, value)| value).collect();
+            entry.z.is_some().then(|| vector(&there, number))
+        };
         let problem = Problem {
             modes: self.modes_in(&functions, number, interval),
             filters: self.filters(number, rule_of)?,
@@ -153,11 +157,7 @@ impl ProblemFile {
                 modes: estimates.collect(),
                 mode_probabilities: list(&self.initial.mode_probabilities),
             },
-            measurements: self
-                .measurements
-                .iter()
-                .map(|entry| entry.z.as_ref().map(|z| vector(z, number)))
-                .collect(),
+            measurements: self.measurements.iter().map(of_step).collect(),
         })
     }
 
@@ -216,6 +216,10 @@ impl ProblemFile {
             if let Some(rows) = &entry.transition {
                 let list = |row: &Vec<f64>| row.iter().map(|&value| number(value)).collect();
                 changed.chain = rows.iter().map(list).collect();
+            }
+            if let Some(rows) = entry.rows() {
+                changed.sensor = changed.sensor.only(&rows);
+                changed.measurement_noise = changed.measurement_noise.select_rows(&rows).select_columns(&rows);
             }
             changes.insert(entry.step, changed);
         }

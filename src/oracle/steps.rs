@@ -17,10 +17,10 @@ use serde::{Deserialize, Serialize};
 pub struct MeasurementAt {
     /// The step, counted from 1.
     pub step: usize,
-    /// m numbers, or null.
+    /// m numbers, or null. In format 2 an entry may be null, too: it is missing.
     #[serde(deserialize_with = "Option::deserialize")]
     #[schemars(required)]
-    pub z: Option<Vec<f64>>,
+    pub z: Option<Vec<Option<f64>>>,
     /// The name of the sensor that sees in this step. Format 2.
     #[serde(
         default,
@@ -85,6 +85,18 @@ pub struct MeasurementAt {
 }
 
 impl MeasurementAt {
+    /// The entries of z that are there, with their places; none at a missed detection.
+    pub fn entries(&self) -> impl Iterator<Item = (usize, f64)> {
+        let all = self.z.iter().flatten().enumerate();
+        all.filter_map(|(row, entry)| Some((row, (*entry)?)))
+    }
+
+    /// The places of the entries that are there, where some are missing.
+    pub(super) fn rows(&self) -> Option<Vec<usize>> {
+        let is_partial = self.z.iter().flatten().any(Option::is_none);
+        is_partial.then(|| self.entries().map(|(row, _)| row).collect())
+    }
+
     /// Whether anything is another in this step than in the problem.
     pub(super) fn has_changes(&self) -> bool {
         self.first_change().is_some()
@@ -93,6 +105,7 @@ impl MeasurementAt {
     /// The first key that changes something.
     pub(super) fn first_change(&self) -> Option<&'static str> {
         let keys = [
+            ("z", self.rows().is_some()),
             ("sensor", self.sensor.is_some()),
             ("T", self.interval.is_some()),
             ("F", self.transitions.is_some()),

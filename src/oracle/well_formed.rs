@@ -251,6 +251,22 @@ impl ProblemFile {
         Ok(())
     }
 
+    /// Entries may be missing where an update has a meaning without them.
+    fn check_missing(&self, field: &str, entry: &MeasurementAt) -> Result<(), Invalid> {
+        let Some(rows) = entry.rows() else { return Ok(()) };
+        let wrong = |reason: String| Err(Invalid::new(Class::Format, field, reason));
+        if rows.is_empty() {
+            return wrong("has no entry that is there; a step without a detection says null for all of it".to_owned());
+        }
+        for (filter, _) in self.filters_with_places() {
+            if matches!(filter, FilterFile::Converted { .. } | FilterFile::FixedGain { .. }) {
+                let reason = format!("lacks an entry, and {} needs all of them", filter.name());
+                return wrong(reason);
+            }
+        }
+        Ok(())
+    }
+
     fn check_measurements(&self) -> Result<(), Invalid> {
         let sensors = self.sensors_at();
         self.check_names_of_sensors()?;
@@ -272,7 +288,8 @@ impl ProblemFile {
             let Some(z) = &entry.z else { continue };
             let field = format!("problem.measurements[{place}].z");
             check_length(&field, z.len(), sensor.noise.len())?;
-            for (row, value) in z.iter().enumerate() {
+            self.check_missing(&field, entry)?;
+            for (row, value) in entry.entries() {
                 if !value.is_finite() {
                     return Err(Invalid::new(
                         Class::NotFinite,
@@ -280,7 +297,7 @@ impl ProblemFile {
                         "is not finite",
                     ));
                 }
-                if ranges[index].get(row) == Some(&true) && *value < 0.0 {
+                if ranges[index].get(row) == Some(&true) && value < 0.0 {
                     let reason = format!("is {value}, a negative range; a range is a distance");
                     return Err(Invalid::new(Class::Range, format!("{field}[{row}]"), reason));
                 }

@@ -19,7 +19,10 @@ pub fn text(problem: &ProblemFile, values: &Table<Vec<String>>) -> String {
     let _ = writeln!(text, "{}", state(problem));
     for step in 1..=dimensions.steps() {
         let detection = match problem.measurements.get(step - 1).and_then(|entry| entry.z.as_ref()) {
-            Some(z) => format!("z = {z:?}"),
+            Some(z) => {
+                let of_entry = |entry: &Option<f64>| entry.map_or("missing".to_owned(), |value| format!("{value:?}"));
+                format!("z = [{}]", z.iter().map(of_entry).collect::<Vec<_>>().join(", "))
+            }
             None => "no detection".into(),
         };
         let _ = writeln!(text, "\nstep {step}: {detection}");

@@ -126,6 +126,15 @@ impl Formulas {
         self.results.iter().map(|entry| entry.name.as_str()).collect()
     }
 
+    /// Some of the formulas alone.
+    pub(in crate::model) fn only(&self, results: &[usize]) -> Self {
+        let chosen = results.iter().filter_map(|&index| self.results.get(index));
+        Self {
+            results: chosen.cloned().collect(),
+            ..self.clone()
+        }
+    }
+
     /// Whether a name is used, in a formula or a definition.
     pub fn uses(&self, name: &str) -> bool {
         let is_it = |operation: &Operation| matches!(operation, Operation::Name(index) if self.names[*index] == name);
