@@ -1176,6 +1176,10 @@ const COMBINATION: &[Row] = &[
 const FIRST_STEP: &[Row] = &[
     ("first-step-unmixed", Q::PredictedModeProbabilities, |a, _| each(|j| a.mu(j))),
     ("first-step-unmixed", Q::MixingProbabilities, |_, j| each(|i| if i == j { 1.0 } else { 0.0 })),
+    ("first-step-predicted", Q::PredictedModeProbabilities, |a, _| each(|j| a.mu(j))),
+    ("first-step-predicted", Q::MixingProbabilities, |_, j| each(|i| if i == j { 1.0 } else { 0.0 })),
+    ("first-step-predicted", Q::PredictedMean, |a, j| rows(a.x0(j))),
+    ("first-step-predicted", Q::PredictedCovariance, |a, j| rows(a.p0(j))),
 ];
 
 /// A mean or covariance with the second entry of the third mode taken from mode j.

@@ -15,6 +15,7 @@ use immaculate::model::function::Function;
 use immaculate::model::motion::{Mode, Motion};
 use immaculate::model::{Conversion, PolarComponent, Sensor};
 use immaculate::number::Enclosure;
+use immaculate::oracle::case::{self, Case, Expected};
 use immaculate::oracle::run::Triangle;
 use immaculate::oracle::setup::Setup;
 use immaculate::oracle::trace::Trace;
@@ -190,6 +191,24 @@ fn a_variant_changes_nothing_where_it_does_not_apply() {
 }
 
 /// Exact, by hand: the words for where a variant can make a difference, in filters of each kind.
+#[test]
+fn a_variant_leaves_every_published_case_alone_to_which_it_does_not_apply() {
+    let is_short = |case: &&Case| case.problem.measurements.len() <= 10 && matches!(case.expected, Expected::Trace(_));
+    let mut changed = BTreeSet::new();
+    for case in case::all().unwrap().iter().filter(is_short) {
+        let setup = case.problem.setup_in_doubles().unwrap();
+        let own = setup.run().in_doubles();
+        for variant in catalogue().iter().filter(|variant| !variant.applies_to(&setup)) {
+            let mut other = setup.clone();
+            assert!(apply(&variant.id, &mut other));
+            if other.run().in_doubles() != own {
+                changed.insert((&variant.id, &case.problem.id));
+            }
+        }
+    }
+    assert!(changed.is_empty(), "{changed:?}");
+}
+
 #[test]
 fn where_a_variant_applies_is_what_its_word_says() {
     let words = |is_met: &dyn Fn(Applies) -> bool| -> BTreeSet<&str> {

@@ -10,8 +10,10 @@
 
 use super::invalid::Invalid;
 use super::judge::{Case, Place};
-use super::variant::{Kind, Variant, catalogue};
+use super::setup::Setup;
+use super::variant::{self, Kind, Variant, catalogue};
 use crate::imm::Quantity;
+use crate::number::RandomRounding;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
@@ -27,6 +29,8 @@ pub struct Evidence<'a> {
     pub passed: BTreeSet<Place>,
     /// Whether the case has a fault.
     pub is_faulty: bool,
+    /// So many steps were right but for the last.
+    pub steps_to_fault: usize,
     /// Whether it is the beginning of another piece of evidence: what does not explain the first fault is found out early.
     pub is_beginning: bool,
 }
@@ -47,11 +51,11 @@ pub enum Diagnosis {
     Pairs(Vec<[&'static Variant; 2]>),
     /// By filter, since what explains one does not explain the others.
     ByFilter(Vec<(String, Diagnosis)>),
-    /// Nothing in the catalogue explains all.
-    Unknown {
-        /// The variants that explain most faulty cases.
-        best: Vec<&'static Variant>,
-        /// The faulty cases that the first of them does not explain.
+    /// What explains some of the faulty cases, and other things that explain others.
+    InParts {
+        /// What explains most of them first, then what explains most of the rest.
+        parts: Vec<Share>,
+        /// The faulty cases that nothing explains.
         unexplained: Vec<String>,
         /// The number of faulty cases.
         of: usize,
@@ -60,7 +64,21 @@ pub enum Diagnosis {
     },
 }
 
+/// What explains some of the faulty cases, alone or together with what explains others.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Share {
+    /// Each explains the same cases; with what is shown they cannot be told apart.
+    pub variants: Vec<&'static Variant>,
+    /// The number of cases that it explains and nothing before it does.
+    pub cases: usize,
+}
+
 impl Diagnosis {
+    /// Whether something explains every faulty case.
+    fn is_known(&self) -> bool {
+        !matches!(self, Self::InParts { unexplained, .. } if !unexplained.is_empty())
+    }
+
     /// Whether all that was found is forms and conventions, which are not wrong.
     pub fn is_excuse(&self) -> bool {
         let is_no_mistake = |variant: &&Variant| variant.kind != Kind::Mistake;
@@ -71,7 +89,10 @@ impl Diagnosis {
             Self::ByFilter(filters) => filters
                 .iter()
                 .all(|(_, of_filter)| matches!(of_filter, Self::Nothing) || of_filter.is_excuse()),
-            Self::Nothing | Self::Unknown { .. } => false,
+            Self::InParts { parts, .. } => {
+                self.is_known() && parts.iter().flat_map(|part| &part.variants).all(is_no_mistake)
+            }
+            Self::Nothing => false,
         }
     }
 }
@@ -82,22 +103,23 @@ impl Diagnosis {
 ///
 /// [`Invalid`] for a problem that cannot be set up.
 pub fn diagnose(evidence: &[Evidence], conventions: &[&str]) -> Result<Diagnosis, Invalid> {
-    let search = Search::new(evidence, conventions);
+    let search = Search::new(evidence, conventions)?;
     if let Some(found) = search.quickly()? {
         return Ok(found);
     }
     let by_filter = by_filter(evidence, conventions)?;
-    let is_known = |(_, found): &(String, Diagnosis)| !matches!(found, Diagnosis::Unknown { .. });
+    let is_known = |(_, found): &(String, Diagnosis)| found.is_known();
     if by_filter.len() > 1 && by_filter.iter().all(is_known) {
         return Ok(Diagnosis::ByFilter(by_filter));
     }
     if let Some(found) = search.pairs()? {
         return Ok(found);
     }
-    if by_filter.len() > 1 && by_filter.iter().any(is_known) {
+    let in_parts = search.in_parts()?;
+    if !in_parts.is_known() && by_filter.len() > 1 && by_filter.iter().any(is_known) {
         return Ok(Diagnosis::ByFilter(by_filter));
     }
-    search.best()
+    Ok(in_parts)
 }
 
 /// The evidence filter by filter, as long as there are several and one is without fault or explained.
@@ -110,34 +132,47 @@ fn by_filter(evidence: &[Evidence], conventions: &[&str]) -> Result<Vec<(String,
     for name in names {
         let of_filter = |evidence: &&Evidence| name_of(evidence) == name;
         let own: Vec<Evidence> = evidence.iter().filter(of_filter).cloned().collect();
-        let search = Search::new(&own, conventions);
+        let search = Search::new(&own, conventions)?;
         let diagnosis = match search.quickly()? {
             Some(diagnosis) => diagnosis,
-            None => search.best()?,
+            None => search.in_parts()?,
         };
         found.push((name, diagnosis));
     }
     Ok(found)
 }
 
+/// Evidence with its problem, which says where a variant applies.
+type Piece<'a> = (&'a Evidence<'a>, Setup<RandomRounding>);
+
+/// The variants that explain the same pieces of evidence, and the pieces that they leave.
+type Explained<'a> = (Vec<&'static Variant>, Vec<&'a Piece<'a>>);
+
 /// A search over some evidence.
 struct Search<'a> {
     /// What fails fails early: faulty cases first, short ones before long ones.
-    evidence: Vec<&'a Evidence<'a>>,
+    evidence: Vec<Piece<'a>>,
     conventions: Vec<&'a str>,
     candidates: Vec<&'static Variant>,
 }
 
 impl<'a> Search<'a> {
-    fn new(evidence: &'a [Evidence<'a>], conventions: &[&'a str]) -> Self {
+    fn new(evidence: &'a [Evidence<'a>], conventions: &[&'a str]) -> Result<Self, Invalid> {
         let mut order: Vec<&Evidence> = evidence.iter().collect();
         order.sort_by_key(|evidence| (!evidence.is_faulty, evidence.case.shown.count()));
+        let with_problem = |evidence: &'a Evidence<'a>| {
+            let mut setup = evidence.case.problem.setup_in_doubles()?;
+            for id in conventions {
+                variant::apply(id, &mut setup);
+            }
+            Ok((evidence, setup))
+        };
         let is_undeclared = |variant: &&Variant| !conventions.contains(&variant.id.as_str());
-        Self {
-            evidence: order,
+        Ok(Self {
+            evidence: order.into_iter().map(with_problem).collect::<Result<_, Invalid>>()?,
             conventions: conventions.to_vec(),
             candidates: catalogue().iter().filter(is_undeclared).collect(),
-        }
+        })
     }
 
     /// The ids of the declared conventions and of variants.
@@ -148,19 +183,37 @@ impl<'a> Search<'a> {
 
     /// Whether variants together explain every value of every case.
     fn explains(&self, variants: &[&'static Variant]) -> Result<bool, Invalid> {
-        let ids = self.ids(variants);
-        for evidence in &self.evidence {
-            if !evidence.case.is_explained_by(&ids, &evidence.passed)? {
+        for (evidence, setup) in &self.evidence {
+            if !self.explains_one(variants, evidence, setup)? {
                 return Ok(false);
             }
         }
         Ok(true)
     }
 
+    /// Whether variants together explain every value of a case. Those that change nothing in it explain what has no fault.
+    fn explains_one(
+        &self,
+        variants: &[&'static Variant],
+        evidence: &Evidence,
+        setup: &Setup<RandomRounding>,
+    ) -> Result<bool, Invalid> {
+        if !variants.iter().any(|variant| variant.applies_to(setup)) {
+            return Ok(!evidence.is_faulty);
+        }
+        let (case, ids) = (&evidence.case, self.ids(variants));
+        // Forms have a noise of their own, which may be far greater.
+        let has_form = variants.iter().any(|variant| variant.kind == Kind::Form);
+        if !has_form && case.is_far_off(&ids, &evidence.passed, evidence.steps_to_fault)? {
+            return Ok(false);
+        }
+        case.is_explained_by(&ids, &evidence.passed)
+    }
+
     /// Whether variants together explain every value of one quantity.
     fn explains_quantity(&self, variants: &[&'static Variant], quantity: Quantity) -> Result<bool, Invalid> {
         let ids = self.ids(variants);
-        for evidence in &self.evidence {
+        for (evidence, _) in &self.evidence {
             if !evidence
                 .case
                 .is_quantity_explained_by(&ids, quantity, &evidence.passed)?
@@ -173,7 +226,7 @@ impl<'a> Search<'a> {
 
     /// One variant, or one for each faulty equation.
     fn quickly(&self) -> Result<Option<Diagnosis>, Invalid> {
-        if self.evidence.iter().all(|evidence| !evidence.is_faulty) {
+        if self.evidence.iter().all(|(evidence, _)| !evidence.is_faulty) {
             return Ok(Some(Diagnosis::Nothing));
         }
         let found = filter(&self.candidates, |variant| self.explains(&[variant]))?;
@@ -226,10 +279,8 @@ impl<'a> Search<'a> {
 
     /// Whether the first evidence, which almost every pair fails at, is short enough for all pairs.
     fn has_time_for_pairs(&self) -> bool {
-        let steps = |evidence: &&Evidence| evidence.case.shown.dimensions.steps();
-        self.evidence
-            .first()
-            .is_none_or(|first| steps(first) <= MOST_STEPS_FOR_PAIRS)
+        let first = self.evidence.first();
+        first.is_none_or(|(first, _)| first.case.shown.dimensions.steps() <= MOST_STEPS_FOR_PAIRS)
     }
 
     /// All pairs.
@@ -266,34 +317,69 @@ impl<'a> Search<'a> {
         )))
     }
 
-    /// The variants that explain most faulty cases, when nothing explains all.
-    fn best(&self) -> Result<Diagnosis, Invalid> {
-        let is_whole = |evidence: &&&Evidence| evidence.is_faulty && !evidence.is_beginning;
-        let faulty: Vec<&&Evidence> = self.evidence.iter().filter(is_whole).collect();
-        let unexplained: Result<Vec<Vec<String>>, Invalid> = self
-            .candidates
-            .par_iter()
-            .map(|variant| {
-                let ids = self.ids(&[variant]);
-                let mut unexplained = Vec::new();
-                for evidence in &faulty {
-                    if !evidence.case.is_explained_by(&ids, &evidence.passed)? {
-                        unexplained.push(evidence.case.problem.id.clone());
-                    }
-                }
-                Ok(unexplained)
-            })
-            .collect();
-        let unexplained = unexplained?;
-        let fewest = unexplained.iter().map(Vec::len).min().unwrap_or(0);
-        let is_best = |index: &usize| unexplained[*index].len() == fewest && fewest < faulty.len();
-        let best: Vec<usize> = (0..self.candidates.len()).filter(is_best).collect();
-        Ok(Diagnosis::Unknown {
-            best: best.iter().map(|&index| self.candidates[index]).collect(),
-            unexplained: best.first().map_or_else(Vec::new, |&index| unexplained[index].clone()),
-            of: faulty.len(),
+    /// What explains most faulty cases and no right case refutes; then what does of the rest.
+    fn in_parts(&self) -> Result<Diagnosis, Invalid> {
+        let is_whole = |(evidence, _): &&Piece| evidence.is_faulty && !evidence.is_beginning;
+        let mut open: Vec<&Piece> = self.evidence.iter().filter(is_whole).collect();
+        let of = open.len();
+        let (mut parts, mut chosen) = (Vec::new(), Vec::new());
+        while let Some((variants, rest)) = self.part(&chosen, &open)?.filter(|_| parts.len() < MOST) {
+            chosen.push(variants[0]);
+            parts.push(Share {
+                variants,
+                cases: open.len() - rest.len(),
+            });
+            open = rest;
+        }
+        Ok(Diagnosis::InParts {
+            parts,
+            unexplained: open
+                .iter()
+                .map(|(evidence, _)| evidence.case.problem.id.clone())
+                .collect(),
+            of,
             pairs: self.has_time_for_pairs(),
         })
+    }
+
+    /// The variants that explain most of these cases, alone or with what is chosen already, and the cases that they leave.
+    fn part<'b>(&self, chosen: &[&'static Variant], open: &[&'b Piece<'b>]) -> Result<Option<Explained<'b>>, Invalid> {
+        let left_by = |variant: &&'static Variant| {
+            let with = [chosen, &[*variant]].concat();
+            let is_left = |(evidence, setup): &Piece| {
+                Ok(!self.explains_one(&with, evidence, setup)? && !self.explains_one(&[variant], evidence, setup)?)
+            };
+            let left: Result<Vec<bool>, Invalid> = open.iter().map(|piece| is_left(piece)).collect();
+            Ok((*variant, left?))
+        };
+        let all: Result<Vec<_>, Invalid> = self.candidates.par_iter().map(left_by).collect();
+        let count = |left: &[bool]| left.iter().filter(|is_left| **is_left).count();
+        let mut all: Vec<(&'static Variant, Vec<bool>)> = all?;
+        all.retain(|(_, left)| count(left) < open.len());
+        all.sort_by_key(|(_, left)| count(left));
+        let mut found: Vec<&'static Variant> = Vec::new();
+        let mut left_by_found: Option<&Vec<bool>> = None;
+        for (variant, left) in &all {
+            if left_by_found.is_none_or(|found| found == left) && self.is_refuted_by_none(variant)? {
+                left_by_found = Some(left);
+                found.push(variant);
+            }
+        }
+        let left = left_by_found.zip(gentlest(&found));
+        Ok(left.map(|(left, found)| {
+            let rest = open.iter().zip(left).filter(|(_, is_left)| **is_left);
+            (found, rest.map(|(piece, _)| *piece).collect())
+        }))
+    }
+
+    /// Whether a variant leaves every right case right.
+    fn is_refuted_by_none(&self, variant: &'static Variant) -> Result<bool, Invalid> {
+        for (evidence, setup) in self.evidence.iter().filter(|(evidence, _)| !evidence.is_faulty) {
+            if !self.explains_one(&[variant], evidence, setup)? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 }
 

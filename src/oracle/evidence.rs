@@ -57,11 +57,13 @@ pub(super) fn evidence_of<'a>(
 ) -> Evidence<'a> {
     let values = report.judgement.iter().flat_map(|judgement| &judgement.values);
     let says_nothing = |value: &&Judged| match value.finding {
-        Finding::Stale | Finding::CannotTell => true,
+        Finding::Stale | Finding::CannotTell | Finding::Unused => true,
         Finding::NotFinite => false,
         Finding::Right => value.own.is_none_or(|own| own.ratio > LIMIT),
         _ => value.own.is_none(),
     };
+    let is_fault = |value: &&Judged| matches!(value.finding, Finding::Fault | Finding::NotFinite);
+    let first = values.clone().filter(is_fault).map(|value| value.place.0).min();
     let passed: BTreeSet<_> = values.filter(says_nothing).map(|value| value.place).collect();
     Evidence {
         case: judge::Case {
@@ -72,6 +74,7 @@ pub(super) fn evidence_of<'a>(
         },
         passed,
         is_faulty: report.outcome == Outcome::Wrong,
+        steps_to_fault: first.unwrap_or(usize::MAX),
         is_beginning: false,
     }
 }

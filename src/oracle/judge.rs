@@ -6,25 +6,27 @@
 //! - else, within as much of what its own equation gives on the program's own inputs, it is **propagated**: the error was made before;
 //! - else it is a **fault** of this equation, or, where inputs are hidden, of one of the equations since the last shown values;
 //! - unless these hidden values were under suspicion already: then it is **undetermined**;
+//! - or it is of a mode of probability zero, which no output depends on: then it is **unused**;
 //! - and where the noise is as large as the value's unit, nobody **can tell**.
 
 use super::invalid::Invalid;
 use super::noise;
 use super::problem::ProblemFile;
-use super::run::Triangle;
-use super::scale::scales;
+pub use super::reference::Reference;
+use super::reference::{Run, is_drowned};
 use super::subject::Precision;
 use super::trace::Trace;
-use super::variant;
 use crate::imm::Needs;
 use crate::imm::Quantity;
 use crate::imm::record::Input;
-use crate::number::RandomRounding;
 use std::collections::BTreeSet;
 
 /// An error of more than so many times the rounding noise is none of rounding. Right filters of other algebra and precision stay below
 /// about 12, other conventions start at some 200, mistakes at 10⁷ (measured over the published cases; see `tests/oracle.rs`).
 pub const LIMIT: f64 = 100.0;
+
+/// No noise is meant beyond so much of it; the spread of two runs is hardly ever a ten-thousandth of what eight would give.
+const FAR: f64 = 1e6;
 
 /// A value of a trace: step, quantity, mode.
 pub type Place = (usize, Quantity, usize);
@@ -40,6 +42,8 @@ pub enum Finding {
     CannotTell,
     /// Built on hidden values that are under suspicion.
     Undetermined,
+    /// Of a mode of probability zero: no output depends on it.
+    Unused,
     /// Shown although there is none: no detection, or a covariance of a filter that has none.
     Stale,
     /// Not finite.
@@ -78,57 +82,6 @@ pub struct OwnError {
     pub size: f64,
 }
 
-/// What a case is judged by.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Reference {
-    /// The certified trace, or that of the declared conventions.
-    pub trace: Trace,
-    /// Its scales.
-    pub scale: Trace,
-    /// The rounding noise in the precision of the program under test.
-    pub noise: Trace,
-    turns: Turns,
-}
-
-/// Which numbers of a trace are angles, which count modulo 2π.
-#[derive(Debug, Clone, PartialEq)]
-struct Turns {
-    /// Of the measurement of each sensor.
-    measured: Vec<Vec<bool>>,
-    /// The sensor of each step.
-    sensors: Vec<usize>,
-    /// Entries of the state.
-    of_state: Vec<usize>,
-}
-
-impl Turns {
-    fn of(problem: &ProblemFile) -> Self {
-        let sensors = problem.sensors_at();
-        Self {
-            measured: sensors.iter().map(|sensor| problem.angles_of(sensor)).collect(),
-            sensors: problem
-                .measurements
-                .iter()
-                .map(|entry| problem.sensor_of(entry).unwrap_or(0))
-                .collect(),
-            of_state: problem.angles_of_state(),
-        }
-    }
-
-    /// Whether a number of a value is one. An innovation is wrapped and is none.
-    fn has(&self, (step, quantity, _): Place, index: usize) -> bool {
-        match quantity {
-            Quantity::PredictedMeasurement => self.measured[self.sensors[step - 1]].get(index) == Some(&true),
-            Quantity::MixedMean
-            | Quantity::PredictedMean
-            | Quantity::CombinedPredictionMean
-            | Quantity::UpdatedMean
-            | Quantity::CombinedMean => self.of_state.contains(&index),
-            _ => false,
-        }
-    }
-}
-
 /// A judged case.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Judgement {
@@ -136,116 +89,6 @@ pub struct Judgement {
     pub values: Vec<Judged>,
     /// Steps that could not be evaluated on the program's own values, a sentence each: a covariance that is not positive definite, say.
     pub failures: Vec<String>,
-}
-
-/// What a run along shown values expects of each, and its noise.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Expected {
-    /// The values by their own equations.
-    pub values: Trace,
-    /// Their rounding noise.
-    pub noise: Trace,
-    /// The steps that could not be evaluated.
-    pub failures: Vec<String>,
-}
-
-/// What a problem's equations, with variants, expect along shown values; so many runs with random rounding give the noise.
-///
-/// # Errors
-///
-/// [`Invalid`] for a problem that cannot be set up.
-pub fn expect(
-    problem: &ProblemFile,
-    variants: &[&str],
-    shown: Option<&Trace>,
-    precision: Precision,
-    runs: u64,
-) -> Result<Expected, Invalid> {
-    let mut setup = problem.setup_in_doubles()?;
-    for id in variants {
-        variant::apply(id, &mut setup);
-    }
-    let centre = match shown {
-        Some(shown) => setup.run_along(shown, RandomRounding::exact, Triangle::Lower),
-        None => setup.run(),
-    };
-    let values = centre.in_doubles();
-    let noise = noise::spread(&values, precision.unit_roundoff(), runs, |number| {
-        // The inputs are perturbed, too, so each run has a problem of its own.
-        let mut setup = problem.setup_perturbed()?;
-        for id in variants {
-            variant::apply(id, &mut setup);
-        }
-        Ok(match shown {
-            Some(shown) => {
-                let triangle = if number % 2 == 0 {
-                    Triangle::Lower
-                } else {
-                    Triangle::Upper
-                };
-                setup.run_along(shown, RandomRounding::input, triangle)
-            }
-            None => setup.run(),
-        })
-    })?;
-    Ok(Expected {
-        values,
-        noise,
-        failures: centre.failures.iter().map(ToString::to_string).collect(),
-    })
-}
-
-impl Reference {
-    /// The reference of a problem under variants (declared conventions), computed in doubles; `certified` is used where there are none.
-    ///
-    /// # Errors
-    ///
-    /// [`Invalid`] for a problem that cannot be set up.
-    pub fn new(
-        problem: &ProblemFile,
-        certified: Option<&Trace>,
-        conventions: &[&str],
-        precision: Precision,
-    ) -> Result<Self, Invalid> {
-        let mut expected = expect(problem, conventions, None, precision, noise::RUNS)?;
-        let trace = match certified {
-            Some(certified) if conventions.is_empty() => certified.clone(),
-            _ => std::mem::replace(&mut expected.values, Trace::empty(&expected.noise.dimensions)),
-        };
-        Ok(Self {
-            scale: scales(problem, &trace),
-            trace,
-            noise: expected.noise,
-            turns: Turns::of(problem),
-        })
-    }
-}
-
-impl Reference {
-    /// That of the first steps alone.
-    #[must_use]
-    pub fn beginning(&self, steps: usize) -> Self {
-        Self {
-            trace: self.trace.beginning(steps),
-            scale: self.scale.beginning(steps),
-            noise: self.noise.beginning(steps),
-            turns: self.turns.clone(),
-        }
-    }
-
-    /// Whether the noise of a value is as large as its unit.
-    pub fn is_drowned(&self, place: Place) -> bool {
-        is_drowned(place, &self.noise, &self.scale)
-    }
-}
-
-/// Whether a noise is as large as the unit of its value.
-fn is_drowned((step, quantity, mode): Place, noise: &Trace, scale: &Trace) -> bool {
-    let pair = noise.get(step, quantity, mode).zip(scale.get(step, quantity, mode));
-    pair.is_some_and(|(noise, scale)| {
-        let mut numbers = noise.iter().zip(scale);
-        numbers.any(|(noise, scale)| LIMIT * noise > *scale || noise.is_nan())
-    })
 }
 
 /// The error of numbers against expected ones: the greatest in rounding noise, and where.
@@ -330,7 +173,13 @@ impl Case<'_> {
     ///
     /// [`Invalid`] for a problem that cannot be set up.
     pub fn judge(&self, conventions: &[&str]) -> Result<Judgement, Invalid> {
-        let own = expect(self.problem, conventions, Some(self.shown), self.precision, noise::RUNS)?;
+        let run = self.run(conventions);
+        let (own, failures) = run.values()?;
+        // What a program computes as this one does has no error, whatever the noise; it is measured for the others.
+        let none = run.noise(&own, 0)?;
+        let is_exact = self.is_within(0.0, &own, &none, &|_| true)
+            && !self.shown.all_places().any(|place| self.reference.is_drowned(place));
+        let noise = if is_exact { none } else { run.noise(&own, noise::RUNS)? };
         let mut values = Vec::new();
         let mut suspects = BTreeSet::new();
         for place in self.shown.all_places() {
@@ -340,7 +189,7 @@ impl Case<'_> {
             }
             let (hidden, last_shown) = inputs(self.problem, self.shown, place);
             let against_certified = self.error(place, &self.reference.trace, &self.reference.noise);
-            let against_own = self.error(place, &own.values, &own.noise);
+            let against_own = self.error(place, &own, &noise);
             let is_right = against_certified.is_some_and(|error| error.ratio <= LIMIT);
             let is_inherited = against_own.is_some_and(|error| error.ratio <= LIMIT);
             let finding = if self.reference.trace.get(step, quantity, mode).is_none() {
@@ -352,14 +201,15 @@ impl Case<'_> {
                 } else {
                     Finding::Propagated
                 }
-            } else if self.reference.is_drowned(place)
-                && (is_right || is_drowned(place, &own.noise, &self.reference.scale))
+            } else if self.reference.is_drowned(place) && (is_right || is_drowned(place, &noise, &self.reference.scale))
             {
                 Finding::CannotTell
             } else if is_right {
                 Finding::Right
             } else if is_inherited {
                 Finding::Propagated
+            } else if self.reference.is_unused(place) {
+                Finding::Unused
             } else if against_own.is_none() || hidden.iter().any(|place| suspects.contains(place)) {
                 Finding::Undetermined
             } else {
@@ -379,10 +229,7 @@ impl Case<'_> {
                 hidden: names,
             });
         }
-        Ok(Judgement {
-            values,
-            failures: own.failures,
-        })
+        Ok(Judgement { values, failures })
     }
 
     /// Whether the equations with these variants explain all shown values from the program's own; places in `passed` are passed over.
@@ -391,10 +238,7 @@ impl Case<'_> {
     ///
     /// [`Invalid`] for a problem that cannot be set up.
     pub fn is_explained_by(&self, variants: &[&str], passed: &BTreeSet<Place>) -> Result<bool, Invalid> {
-        // Most variants are far off, which two runs show: their spread is hardly ever a thousandth of what eight would give.
-        const FAR: f64 = 1e6;
-        let is_asked = |place: &Place| !passed.contains(place);
-        Ok(self.is_within(FAR, 2, variants, &is_asked)? && self.is_within(LIMIT, noise::RUNS, variants, &is_asked)?)
+        self.is_explained(variants, &|place| !passed.contains(place))
     }
 
     /// Whether the equations with these variants explain all shown values of one quantity.
@@ -408,33 +252,53 @@ impl Case<'_> {
         quantity: Quantity,
         passed: &BTreeSet<Place>,
     ) -> Result<bool, Invalid> {
-        let is_asked = |place: &Place| place.1 == quantity && !passed.contains(place);
-        self.is_within(LIMIT, noise::RUNS, variants, &is_asked)
+        self.is_explained(variants, &|place| place.1 == quantity && !passed.contains(place))
     }
 
-    fn is_within(
-        &self,
-        limit: f64,
-        runs: u64,
-        variants: &[&str],
-        is_asked: &dyn Fn(&Place) -> bool,
-    ) -> Result<bool, Invalid> {
-        let own = expect(self.problem, variants, Some(self.shown), self.precision, runs)?;
+    /// Noise is measured as far as it matters: an error that is small without it is small with it, and most variants are far off, which
+    /// two runs show.
+    fn is_explained(&self, variants: &[&str], is_asked: &dyn Fn(&Place) -> bool) -> Result<bool, Invalid> {
+        let run = self.run(variants);
+        let (own, _) = run.values()?;
+        let is_within = |limit, runs| Ok(self.is_within(limit, &own, &run.noise(&own, runs)?, is_asked));
+        Ok(is_within(LIMIT, 0)? || is_within(FAR, 2)? && is_within(LIMIT, noise::RUNS)?)
+    }
+
+    /// Whether the equations with these variants are so far off in the first steps that no noise can be meant: those up to the first fault,
+    /// until which the program was right, and the noise is about that of the right filter.
+    ///
+    /// # Errors
+    ///
+    /// [`Invalid`] for a problem that cannot be set up.
+    pub fn is_far_off(&self, variants: &[&str], passed: &BTreeSet<Place>, steps: usize) -> Result<bool, Invalid> {
+        let (own, _) = self.run(variants).values()?;
+        let is_asked = |place: &Place| place.0 <= steps && !passed.contains(place);
+        Ok(!self.is_within(FAR, &own, &self.reference.noise, &is_asked))
+    }
+
+    /// The run along the shown values.
+    fn run<'b>(&'b self, variants: &'b [&'b str]) -> Run<'b> {
+        Run {
+            problem: self.problem,
+            variants,
+            shown: Some(self.shown),
+            precision: self.precision,
+        }
+    }
+
+    /// Whether shown values are so near to own ones, in units of noise.
+    fn is_within(&self, limit: f64, own: &Trace, noise: &Trace, is_asked: &dyn Fn(&Place) -> bool) -> bool {
         let is_shown = |place: &Place| self.shown.get(place.0, place.1, place.2).is_some();
         let is_within = |place: Place| {
             let (step, quantity, mode) = place;
             if self.shown.finite(step, quantity, mode).is_none() {
                 // What is not finite is explained by equations that have no answer either.
-                return own.values.finite(step, quantity, mode).is_none();
+                return own.finite(step, quantity, mode).is_none();
             }
-            let error = self.error(place, &own.values, &own.noise);
-            error.is_some_and(|error| error.ratio <= limit)
+            self.error(place, own, noise).is_some_and(|error| error.ratio <= limit)
         };
-        let mut places = self
-            .shown
-            .all_places()
-            .filter(|place| is_shown(place) && is_asked(place));
-        Ok(places.all(is_within))
+        let mut places = self.shown.all_places();
+        places.all(|place| !is_shown(&place) || !is_asked(&place) || is_within(place))
     }
 }
 

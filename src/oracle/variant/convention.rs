@@ -12,7 +12,7 @@ use nalgebra::{DVector, Dyn};
 
 /// Applies a convention; whether it is one.
 pub(super) fn apply<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
-    of_any_filter(id, setup) || of_sustika2015(id, setup)
+    of_any_filter(id, setup) || of_the_first_step(id, setup) || of_sustika2015(id, setup)
 }
 
 /// What sustika2015 leaves open: modes of unequal dimensions, and where R^c is evaluated.
@@ -32,7 +32,7 @@ fn of_sustika2015<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     true
 }
 
-/// The square root, angles, the first step and the constant of the likelihood.
+/// The square root, angles and the constant of the likelihood.
 fn of_any_filter<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let points = draws_points(setup);
     let equations = &mut setup.equations;
@@ -68,18 +68,6 @@ fn of_any_filter<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
                 }
             }
         }
-        // step 1: cⱼ = μⱼ, μᵢ∣ⱼ = 1 for i = j and 0 else
-        "first-step-unmixed" => {
-            equations.predicted_mode_probability = |problem, previous, now, j| {
-                if now.step == 1 {
-                    return previous.mode_probabilities[j].clone();
-                }
-                (Equations::standard().predicted_mode_probability)(problem, previous, now, j)
-            };
-            if setup.problem.interaction == Interaction::Imm {
-                equations.mixing_probabilities = mixed_from_the_second_step;
-            }
-        }
         // ln L + (m/2) ln 2π
         "log-likelihood-without-two-pi" => {
             equations.log_likelihood = |_, _, now, j| {
@@ -91,6 +79,40 @@ fn of_any_filter<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
         _ => return false,
     }
     true
+}
+
+/// What the initial estimate is.
+fn of_the_first_step<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
+    let equations = &mut setup.equations;
+    match id {
+        // step 1: cⱼ = μⱼ, μᵢ∣ⱼ = 1 for i = j and 0 else
+        "first-step-unmixed" => leave_the_first_step_unmixed(setup),
+        // and x̂⁻, P⁻ of step 1 are the initial estimates
+        "first-step-predicted" => {
+            equations.predicted_mean = |problem, previous, now, j| match now.step {
+                1 => now.mixed[j].mean.clone(),
+                _ => (Equations::standard().predicted_mean)(problem, previous, now, j),
+            };
+            equations.predicted_covariance = |problem, previous, now, j| match now.step {
+                1 => now.mixed[j].covariance.clone(),
+                _ => (Equations::standard().predicted_covariance)(problem, previous, now, j),
+            };
+            leave_the_first_step_unmixed(setup);
+        }
+        _ => return false,
+    }
+    true
+}
+
+/// In step 1 every mode goes on from its own initial estimate, with its own initial probability.
+fn leave_the_first_step_unmixed<T: Real>(setup: &mut Setup<T>) {
+    setup.equations.predicted_mode_probability = |problem, previous, now, j| match now.step {
+        1 => previous.mode_probabilities[j].clone(),
+        _ => (Equations::standard().predicted_mode_probability)(problem, previous, now, j),
+    };
+    if setup.problem.interaction == Interaction::Imm {
+        setup.equations.mixing_probabilities = mixed_from_the_second_step;
+    }
 }
 
 /// μᵢ∣ⱼ, at step 1 of modes that keep what they have.

@@ -100,13 +100,22 @@ fn of_update<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     true
 }
 
-/// Whether there is an information form: no points, and no entry of the state that a mode knows exactly, whose covariance has no inverse.
+/// Whether there is an information form: no points, no entry of the state that a mode knows exactly, and nothing that is measured exactly,
+/// whose covariances have no inverse.
 fn has_information<T: Real>(setup: &Setup<T>) -> bool {
     let modes = &setup.problem.modes;
     draws_no_points(setup)
+        && setup.problems().all(|problem| has_inverse(&problem.measurement_noise))
         && !modes
             .iter()
             .any(|mode| (0..setup.problem.n().0).any(|entry| mode.lacks(entry)))
+}
+
+/// Whether a covariance has an inverse, and has it still when its entries are rounded: no pivot is below 2⁻⁴⁰ of its variance.
+fn has_inverse<T: Real>(covariance: &DMatrix<T>) -> bool {
+    let least = T::one() / T::integer(1 << 40);
+    let pivots = ldl(covariance).diagonal;
+    (0..pivots.len()).all(|row| pivots[row] > covariance[(row, row)].clone() * least.clone())
 }
 
 /// The gain and the likelihood, by an inverse or another factor.

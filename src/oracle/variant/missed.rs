@@ -26,9 +26,10 @@ fn of_measurement<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
         }
         "missed-detection-as-the-last-measurement" => {
             for k in 1..setup.measurements.len() {
-                if setup.measurements[k].is_none() {
-                    setup.measurements[k] = setup.measurements[k - 1].clone();
-                }
+                // That of a sensor of another dimension no program can take.
+                let m = setup.problem_of(k + 1).m().0;
+                let last = setup.measurements[k - 1].clone().filter(|z| z.len() == m);
+                setup.measurements[k] = setup.measurements[k].take().or(last);
             }
         }
         _ => return false,
@@ -129,9 +130,12 @@ fn last_likelihood<T: Real>(previous: &Step<T, Dyn, Dyn>, j: usize) -> T {
     previous.log_likelihoods.get(j).cloned().unwrap_or_else(T::zero)
 }
 
-/// μⱼ by Bayes' rule from the log-likelihoods that stand in the record.
+/// μⱼ by Bayes' rule from the log-likelihoods that stand in the record; undecided where a mode has none.
 fn by_bayes<T: Real>(now: &Step<T, Dyn, Dyn>, j: usize) -> T {
     let (logarithms, predicted) = (&now.log_likelihoods, &now.predicted_mode_probabilities);
+    if logarithms.len() < predicted.len() {
+        return T::undecided();
+    }
     let likelihoods: Vec<T> = (0..predicted.len())
         .map(|i| relative_likelihood(logarithms, predicted, i))
         .collect();

@@ -150,14 +150,14 @@ impl Applies {
         }
     }
 
-    /// Whether it can make a difference here. Where it cannot, the variant leaves every value as it is.
+    /// Whether it can make a difference here, in any mode. Where it cannot, the variant leaves every value as it is.
     pub fn to<T: Real>(self, setup: &Setup<T>) -> bool {
         let problem = &setup.problem;
         match self {
             Self::All => true,
-            Self::Points => draws_points(setup),
+            Self::Points => !draws_no_points(setup),
             Self::Conversions => problem.conversion().is_some(),
-            Self::Kalman => draws_no_points(setup) && problem.has_covariances(),
+            Self::Kalman => !draws_points(setup) && problem.has_covariances(),
             Self::Linearised => {
                 let linearises = |filter: &Filter<T, Dyn, Dyn>| {
                     filter.predict == Transform::Linearised || filter.update == Update::By(Transform::Linearised)
@@ -178,7 +178,8 @@ impl Applies {
             Self::Angles => {
                 let has_angle =
                     |problem: &Problem<T, Dyn, Dyn>| (0..problem.m().0).any(|row| problem.sensor.is_angle(row));
-                problem.conversion().is_none() && setup.problems().any(has_angle)
+                let converts = |filter: &Filter<T, Dyn, Dyn>| matches!(filter.update, Update::Converted(_));
+                !problem.filters.iter().all(converts) && setup.problems().any(has_angle)
             }
             Self::StateAngles => !problem.angles.is_empty(),
             Self::Bearings => {
@@ -299,9 +300,14 @@ pub fn find(id: &str) -> Option<&'static Variant> {
 }
 
 /// Makes a run one of a variant; whether there is one of this name. Several may be applied, one after the other. What has no meaning
-/// without covariances leaves filters that carry none as they are.
+/// without covariances leaves filters that carry none as they are, and what is of several modes leaves one mode alone.
 pub fn apply<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
-    if !setup.problem.has_covariances() && find(id).is_some_and(Variant::needs_covariances) {
+    let has_no_meaning = |variant: &Variant| {
+        let is_of_modes = variant.applies == Applies::SeveralModes;
+        (is_of_modes && setup.problem.modes.len() == 1)
+            || (variant.needs_covariances() && !setup.problem.has_covariances())
+    };
+    if find(id).is_some_and(has_no_meaning) {
         return true;
     }
     if step::apply(id, setup) {
