@@ -59,9 +59,17 @@ fn main() -> ExitCode {
         Err(error) if !error.use_stderr() => Ok(error.render().to_string().into()),
         Err(error) => error.exit(),
     };
-    match done.and_then(|done| print(&done.text).map(|_| done.status)) {
-        Ok(status) => ExitCode::from(status),
-        Err(Refusal::Output(sentence)) => complain(&sentence, 1),
+    match done.and_then(|done| print(&done.text).map(|_| done)) {
+        Ok(Done {
+            complaint: None,
+            status,
+            ..
+        }) => ExitCode::from(status),
+        Ok(Done {
+            complaint: Some(sentence),
+            ..
+        })
+        | Err(Refusal::Output(sentence)) => complain(&sentence, 1),
         Err(Refusal::Request(sentence)) => complain(&sentence, 2),
     }
 }

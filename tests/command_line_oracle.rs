@@ -32,7 +32,8 @@ fn every_command_has_help_with_its_options() {
                 "--kind",
                 "--timeout",
                 "--json",
-                "Exit status: 0 all right, 1",
+                "--strict",
+                "Exit status: 0 all that was judged is right, 1",
             ][..],
         ),
         (&["trace"], &["--digits", "--json", "--csv", "standard input"]),
@@ -157,16 +158,40 @@ fn a_problem_comes_from_a_file_or_from_standard_input() {
 #[test]
 fn a_run_that_stops_says_at_which_step() {
     let mut problem = of("steps.kalman").problem.clone();
-    problem.measurements[1].z = Some(vec![1e200, -1e200]);
+    problem.measurements[1].z = Some(vec![Some(1e200), Some(-1e200)]);
     let text = json!(problem).to_string();
-    let output = run_with(&["trace", "-"], text.as_bytes());
-    assert_eq!(output.status.code(), Some(1));
-    let said = String::from_utf8(output.stdout).unwrap();
-    assert!(said.lines().last().unwrap().starts_with("step 2, "), "{said}");
+    for form in [&["trace", "-"][..], &["trace", "-", "--csv"], &["trace", "-", "--json"]] {
+        let output = run_with(form, text.as_bytes());
+        assert_eq!(output.status.code(), Some(1), "{form:?}");
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(said.starts_with("immaculate: steps.kalman: step 2, "), "{said}");
+        assert!(!output.stdout.is_empty(), "{form:?}: what came before is shown");
+    }
     let output = run_with(&["trace", "-", "--json"], text.as_bytes());
     let value: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert!(value["error"].as_str().unwrap().starts_with("step 2, "), "{value}");
     assert_eq!(value["steps"][0]["step"], 1);
+}
+
+/// A prior of 10¹⁵ beside a noise of 10⁻⁴ leaves doubles no digit of a variance.
+#[test]
+fn a_variance_that_rounding_made_negative_is_a_complaint() {
+    let problem = json!({
+        "format": "immaculate-problem/2", "id": "diffuse", "state": ["x", "vx"],
+        "F": [[1, 0.1], [0, 1]], "Q": [[2.5e-5, 5e-4], [5e-4, 0.01]],
+        "measurement": { "kind": "linear", "H": [[1, 0]] }, "R": [[1e-4]], "filter": { "kind": "kalman" },
+        "initial": { "mean": [0, 1], "covariance": [[1e15, 0], [0, 1e15]] },
+        "measurements": [{ "step": 1, "z": [1.5] }, { "step": 2, "z": [1.7] }]
+    });
+    let output = run_with(&["trace", "-"], problem.to_string().as_bytes());
+    assert_eq!(output.status.code(), Some(1));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        said.starts_with("immaculate: diffuse: step 2, mode `filter`, updated.covariance: a variance is -"),
+        "{said}"
+    );
+    let output = run_with(&["trace", "-", "--digits", "6"], problem.to_string().as_bytes());
+    assert!(output.status.success());
 }
 
 #[test]

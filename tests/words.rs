@@ -8,10 +8,11 @@
 use immaculate::book;
 use immaculate::imm::Quantity::{self, CombinedMean, Gain, LogLikelihood, MixedCovariance, ModeProbabilities};
 use immaculate::number::Rational;
+use immaculate::oracle::behaviour::{Behaviour, NotAsked, Unasked};
 use immaculate::oracle::case::{self, BadCase};
 use immaculate::oracle::certify::Certified;
 use immaculate::oracle::check::{CaseReport, Outcome, Report};
-use immaculate::oracle::diagnose::Diagnosis;
+use immaculate::oracle::diagnose::{Diagnosis, Share};
 use immaculate::oracle::invalid::{Class, Invalid};
 use immaculate::oracle::judge::{Finding, Judged, Judgement, OwnError};
 use immaculate::oracle::problem::FilterFile;
@@ -66,7 +67,7 @@ fn a_verdict_in_which_all_is_right() {
             diagnosis: Diagnosis::Nothing,
             // Where nothing was judged, nothing is said of what was never shown.
             hidden: if echo.is_none() { vec![Gain] } else { Vec::new() },
-            not_asked: 0,
+            not_asked: Vec::new(),
             remarks: Vec::new(),
             ..of_every_outcome()
         };
@@ -99,26 +100,11 @@ fn every_kind_of_diagnosis() {
             ("kalman".into(), Diagnosis::One(vec![mistake])),
             ("cubature".into(), Diagnosis::Nothing),
         ]),
-        Diagnosis::Unknown {
-            best: vec![mistake],
-            unexplained: (1..=6).map(|number| format!("case-{number}")).collect(),
-            of: 8,
-            pairs: true,
-        },
-        Diagnosis::Unknown {
-            best: vec![mistake],
-            unexplained: (1..=5).map(|number| format!("case-{number}")).collect(),
-            of: 8,
-            pairs: true,
-        },
-        Diagnosis::Unknown {
-            best: vec![mistake],
-            unexplained: Vec::new(),
-            of: 2,
-            pairs: true,
-        },
-        Diagnosis::Unknown {
-            best: Vec::new(),
+        in_parts(&[(&[mistake], 2)], 6),
+        in_parts(&[(&[mistake], 2), (&[second, third], 1)], 5),
+        in_parts(&[(&[mistake], 2), (&[second], 1)], 0),
+        Diagnosis::InParts {
+            parts: Vec::new(),
             unexplained: vec!["case-1".into()],
             of: 1,
             pairs: false,
@@ -178,6 +164,7 @@ fn of_every_outcome() -> Report {
             value(ModeProbabilities, Finding::CannotTell, None),
             value(ModeProbabilities, Finding::Undetermined, None),
             value(ModeProbabilities, Finding::Stale, None),
+            value(ModeProbabilities, Finding::Unused, None),
             value(ModeProbabilities, Finding::Right, None),
         ],
     );
@@ -220,10 +207,35 @@ fn of_every_outcome() -> Report {
         },
         echo: Some(true),
         cases,
-        not_asked: 3,
+        not_asked: [Unasked::Kind, Unasked::Format, Unasked::Validation]
+            .map(unasked)
+            .to_vec(),
         diagnosis: Diagnosis::One(vec![found("mixed-spread-omitted")]),
         hidden: vec![Gain, LogLikelihood],
         remarks: vec!["the program wrote to standard output what is no message".into()],
+    }
+}
+
+/// What explains some cases, and the number of cases that nothing explains.
+fn in_parts(parts: &[(&[&'static Variant], usize)], unexplained: usize) -> Diagnosis {
+    let part = |(variants, cases): &(&[&'static Variant], usize)| Share {
+        variants: variants.to_vec(),
+        cases: *cases,
+    };
+    Diagnosis::InParts {
+        parts: parts.iter().map(part).collect(),
+        unexplained: (1..=unexplained).map(|number| format!("case-{number}")).collect(),
+        of: unexplained + parts.iter().map(|(_, cases)| cases).sum::<usize>(),
+        pairs: true,
+    }
+}
+
+/// A case with long runs that was not asked.
+fn unasked(why: Unasked) -> NotAsked {
+    NotAsked {
+        families: vec!["kalman"],
+        behaviours: vec![Behaviour::LongRun],
+        why,
     }
 }
 
@@ -231,6 +243,8 @@ fn case(id: &str, outcome: Outcome) -> CaseReport {
     CaseReport {
         id: id.into(),
         filters: vec![FilterFile::Kalman {}; 2],
+        behaviours: vec![Behaviour::OrdinaryData],
+        is_rejection: matches!(outcome, Outcome::Rejected { .. } | Outcome::NotRejected),
         dimensions: Dimensions::new(4, 2, 2, 2),
         outcome,
         judgement: None,

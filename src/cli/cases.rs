@@ -164,7 +164,7 @@ fn verify(select: &Select, as_json: bool) -> Result<Done, Refusal> {
         report::cases::verified(&outcomes)
     };
     Ok(Done {
-        text,
         status: u8::from(is_wrong),
+        ..text.into()
     })
 }

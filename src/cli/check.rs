@@ -17,7 +17,7 @@ use std::time::Duration;
 
 #[derive(Args)]
 #[command(
-    after_help = "Exit status: 0 all right, 1 something is wrong, 2 the check could not be made or nothing was judged.\n\n\
+    after_help = "Exit status: 0 all that was judged is right, 1 something is wrong (with --strict: or was not judged), 2 the check could not be made or nothing was judged.\n\n\
     The protocol and the file formats are in spec/formats.md; examples in several languages are in tests/adapters."
 )]
 pub struct CheckArguments {
@@ -35,6 +35,9 @@ pub struct CheckArguments {
     /// The time that the program has for each case, in seconds
     #[arg(long, value_name = "SECONDS", default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..=3600))]
     timeout: u64,
+    /// End with status 1 also where something that a filter may meet was not judged
+    #[arg(long, conflicts_with = "problems")]
+    strict: bool,
     /// Print JSON instead of text
     #[arg(long)]
     json: bool,
@@ -79,9 +82,9 @@ pub fn run(arguments: &CheckArguments) -> Result<Done, Refusal> {
     let status = match (report.is_wrong(), report.is_empty()) {
         (true, _) => 1,
         (false, true) => 2,
-        (false, false) => 0,
+        (false, false) => u8::from(arguments.strict && !report.is_complete()),
     };
-    Ok(Done { text, status })
+    Ok(Done { status, ..text.into() })
 }
 
 /// The problems of files and of folders, the files of a folder in the order of their names.

@@ -44,11 +44,17 @@ pub struct Done {
     pub text: String,
     /// The exit status.
     pub status: u8,
+    /// What kept the command from coming to its end: it is said after what is printed, and the exit status is 1.
+    pub complaint: Option<String>,
 }
 
 impl From<String> for Done {
     fn from(text: String) -> Self {
-        Self { text, status: 0 }
+        Self {
+            text,
+            status: 0,
+            complaint: None,
+        }
     }
 }
 

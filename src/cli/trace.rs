@@ -8,7 +8,7 @@ use immaculate::oracle::certify::{certified_as_far_as_it_goes, certified_decimal
 use immaculate::oracle::csv;
 use immaculate::oracle::invalid::Invalid;
 use immaculate::oracle::problem::ProblemFile;
-use immaculate::oracle::run::run_in_doubles;
+use immaculate::oracle::run::{lost_covariance, run_in_doubles};
 use immaculate::oracle::trace::{FORMAT, numbers_as_json};
 use immaculate::report;
 use immaculate::report::literal::{self, Language};
@@ -63,10 +63,11 @@ pub fn run(arguments: &TraceArguments) -> Result<Done, Refusal> {
     Ok(format!("{text}{digits} digits of every value, proven with {bits} bits\n").into())
 }
 
-/// The run in doubles. One that stops before its end is shown as far as it came, with exit status 1.
+/// The run in doubles. One that stops before its end is shown as far as it came, with what stopped it as a complaint; so is one whose
+/// digits rounding has eaten.
 fn in_doubles(arguments: &TraceArguments, problem: &ProblemFile) -> Result<Done, Invalid> {
     let (values, failure) = run_in_doubles(problem)?;
-    let status = u8::from(failure.is_some());
+    let failure = failure.or_else(|| lost_covariance(problem, &values));
     let text = if arguments.csv {
         csv::write(&problem.id, &values, "", |_, _| String::new())
     } else if arguments.json {
@@ -74,8 +75,10 @@ fn in_doubles(arguments: &TraceArguments, problem: &ProblemFile) -> Result<Done,
         json_text(&json!({ "format": FORMAT, "id": problem.id, "steps": steps, "error": failure }))
     } else {
         let texts = values.map(|_, numbers| numbers.iter().map(|number| format!("{number:?}")).collect());
-        let end = failure.map_or_else(String::new, |failure| failure + "\n");
-        report::trace::text(problem, &texts) + &end
+        report::trace::text(problem, &texts)
     };
-    Ok(Done { text, status })
+    Ok(Done {
+        complaint: failure.map(|failure| format!("{}: {failure}", problem.id)),
+        ..text.into()
+    })
 }

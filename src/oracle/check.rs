@@ -3,6 +3,7 @@
 //! After this file the reader knows how a verdict over all cases comes about: the echo first, then each case that the program has the
 //! filter for, then, if anything is faulty, the search for what was done.
 
+use super::behaviour::{NotAsked, Unasked};
 use super::case::{self, BadCase, Case, Expected};
 use super::certify::certified_as_far_as_it_goes;
 use super::diagnose::{Evidence, diagnose};
@@ -161,12 +162,17 @@ fn declared(ready: &Ready) -> Result<Vec<&'static str>, NotMade> {
 ///
 /// [`NotMade`] when the check cannot be made.
 pub fn check(subject: &mut dyn Subject, selection: &Selection, progress: &dyn Fn(&str)) -> Result<Report, NotMade> {
-    let selected = case::all()?.iter().filter(|case| selection.has(case));
-    let questions: Vec<Question> = selected.map(Question::Published).collect();
+    let (selected, others): (Vec<&Case>, Vec<&Case>) = case::all()?.iter().partition(|case| selection.has(case));
+    let questions: Vec<Question> = selected.into_iter().map(Question::Published).collect();
     if questions.is_empty() {
         return Err(NotMade::NoCase);
     }
-    ask(subject, &questions, progress)
+    let others = others
+        .into_iter()
+        .map(|case| NotAsked::of(&case.problem, Unasked::Selection));
+    let mut report = ask(subject, &questions, progress)?;
+    report.not_asked.extend(others);
+    Ok(report)
 }
 
 /// Checks a program over problems that are not published; each is certified first, as far as that goes.
@@ -243,8 +249,8 @@ impl Question<'_> {
         }
     }
 
-    /// Whether a program with these filters and formats is asked it. A problem of the user is asked in whatever format it has.
-    fn is_for(&self, ready: &Ready) -> bool {
+    /// Why a program with these filters and formats is not asked it. A problem of the user is asked in whatever format it has.
+    fn why_not(&self, ready: &Ready) -> Option<Unasked> {
         let is_known = |kind: &str| {
             ready
                 .kinds
@@ -259,17 +265,30 @@ impl Question<'_> {
             }
         };
         match self.expected() {
-            Expected::Trace(_) => is_read && self.problem().kinds().into_iter().all(is_known),
-            Expected::Rejection(_) => ready.validates,
+            Expected::Rejection(_) => (!ready.validates).then_some(Unasked::Validation),
+            Expected::Trace(_) if !self.problem().kinds().into_iter().all(is_known) => Some(Unasked::Kind),
+            Expected::Trace(_) => (!is_read).then_some(Unasked::Format),
         }
     }
+}
+
+/// The questions that a program is asked, and those that it is not.
+fn asked_of<'a, 'b>(ready: &Ready, questions: &'b [Question<'a>]) -> (Vec<&'b Question<'a>>, Vec<NotAsked>) {
+    let (mut asked, mut others) = (Vec::new(), Vec::new());
+    for question in questions {
+        match question.why_not(ready) {
+            None => asked.push(question),
+            Some(why) => others.push(NotAsked::of(question.problem(), why)),
+        }
+    }
+    (asked, others)
 }
 
 /// Asks a program, and judges its answers.
 fn ask(subject: &mut dyn Subject, questions: &[Question], progress: &dyn Fn(&str)) -> Result<Report, NotMade> {
     let ready = subject.start()?;
     let conventions = declared(&ready)?;
-    let asked: Vec<&Question> = questions.iter().filter(|question| question.is_for(&ready)).collect();
+    let (asked, others) = asked_of(&ready, questions);
     let mut answered = Vec::new();
     let mut cases = Vec::new();
     for question in &asked {
@@ -314,7 +333,7 @@ fn ask(subject: &mut dyn Subject, questions: &[Question], progress: &dyn Fn(&str
     let hidden = never_shown(&asked, &traces);
     Ok(Report {
         echo: ready.echo.as_ref().map(|echo| *echo == echoed()),
-        not_asked: questions.len() - asked.len(),
+        not_asked: others,
         hidden,
         ready,
         cases,

@@ -54,6 +54,7 @@
 //! ```
 
 pub mod answer;
+pub mod behaviour;
 mod bound;
 pub mod case;
 pub mod certify;
@@ -70,6 +71,7 @@ pub mod models;
 pub mod noise;
 pub mod problem;
 pub mod process;
+mod reference;
 pub mod run;
 pub mod scale;
 pub mod schema;

@@ -5,6 +5,7 @@
 //! from the program's own earlier values, and where some are hidden, from the last ones that it showed.
 
 use super::invalid::Invalid;
+use super::judge::Place;
 use super::problem::ProblemFile;
 use super::setup::Setup;
 use super::trace::{Dimensions, Table, Trace};
@@ -160,6 +161,29 @@ pub fn run_in_doubles(problem: &ProblemFile) -> Result<(Trace, Option<String>), 
         computed.in_doubles(),
         computed.failures.first().map(ToString::to_string),
     ))
+}
+
+/// The first covariance that rounding has left without a meaning, in a sentence: it has a negative variance, which no filter may show.
+pub fn lost_covariance(problem: &ProblemFile, values: &Trace) -> Option<String> {
+    let negative = |place: &Place| {
+        let (step, quantity, mode) = *place;
+        let numbers = values.get(step, quantity, mode).filter(|_| quantity.is_covariance())?;
+        let size = numbers.len().isqrt();
+        let variances = numbers.iter().step_by(size + 1);
+        let least = variances.copied().fold(f64::INFINITY, f64::min);
+        let of_mode = if quantity.is_of_mode() {
+            format!(", mode `{}`", problem.modes[mode].name)
+        } else {
+            String::new()
+        };
+        (least < 0.0).then(|| {
+            format!(
+                "step {step}{of_mode}, {}: a variance is {least:e}, by rounding; `--digits` gives certified numbers",
+                quantity.name()
+            )
+        })
+    };
+    values.all_places().find_map(|place| negative(&place))
 }
 
 impl Computed<RandomRounding> {

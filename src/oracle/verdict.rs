@@ -2,6 +2,7 @@
 //!
 //! After this file the reader knows which outcomes there are, and when a program is wrong.
 
+use super::behaviour::{Behaviour, NotAsked};
 use super::diagnose::Diagnosis;
 use super::judge::{Finding, Judged, Judgement};
 use super::problem::{FilterFile, ProblemFile};
@@ -68,6 +69,10 @@ pub struct CaseReport {
     pub id: String,
     /// The filter of each mode.
     pub filters: Vec<FilterFile>,
+    /// What it has, if it is published.
+    pub behaviours: Vec<Behaviour>,
+    /// Whether it must be rejected.
+    pub is_rejection: bool,
     /// Its dimensions.
     pub dimensions: Dimensions,
     /// How it went.
@@ -94,6 +99,8 @@ impl CaseReport {
             filters: (0..problem.modes.len())
                 .map(|mode| problem.filter_of(mode).clone())
                 .collect(),
+            behaviours: Behaviour::of(problem),
+            is_rejection: problem.flags.iter().any(|flag| flag == "rejected"),
             dimensions: problem.dimensions(),
             outcome: Outcome::NothingShown,
             judgement: None,
@@ -105,10 +112,23 @@ impl CaseReport {
         }
     }
 
+    /// The families of its filters.
+    pub fn families(&self) -> Vec<&'static str> {
+        families(self.filters.iter())
+    }
+
     /// The columns of a quantity in a step of the case.
     pub fn columns(&self, step: usize, quantity: Quantity) -> usize {
         self.dimensions.shape(step, quantity).1
     }
+}
+
+/// The families of filters, each once.
+pub(super) fn families<'a>(filters: impl Iterator<Item = &'a FilterFile>) -> Vec<&'static str> {
+    let mut families: Vec<&str> = filters.map(FilterFile::family).collect();
+    families.sort_unstable();
+    families.dedup();
+    families
 }
 
 /// The whole verdict.
@@ -120,8 +140,8 @@ pub struct Report {
     pub echo: Option<bool>,
     /// The cases.
     pub cases: Vec<CaseReport>,
-    /// The cases for which it has no filter, or that its caller must check.
-    pub not_asked: usize,
+    /// The cases for which it has no filter, whose format it does not read, that its caller must check, or that were not selected.
+    pub not_asked: Vec<NotAsked>,
     /// What explains the faults.
     pub diagnosis: Diagnosis,
     /// The quantities that were never shown.

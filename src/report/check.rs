@@ -3,10 +3,12 @@
 //! After this file the reader knows how a verdict looks: the cases, the faults by equation, what was done, and last the sentence that
 //! matters.
 
+use super::behaviour::behaviours;
 use super::{table, wrapped};
 use crate::imm::Quantity;
+use crate::oracle::behaviour::Unasked;
 use crate::oracle::check::{CaseReport, Outcome, Report};
-use crate::oracle::diagnose::Diagnosis;
+use crate::oracle::diagnose::{Diagnosis, Share};
 use crate::oracle::judge::{Finding, Judged};
 use crate::oracle::subject::Broken;
 use crate::oracle::variant::{Kind, Variant};
@@ -21,6 +23,7 @@ pub fn text(report: &Report) -> String {
     for remark in &report.remarks {
         let _ = write!(text, "\nREMARK\n{}", wrapped(remark, "  "));
     }
+    text.push_str(&behaviours(report));
     text.push_str(&coverage(report));
     text.push_str(&summary(report));
     text
@@ -259,36 +262,40 @@ fn diagnosis(diagnosis: &Diagnosis) -> String {
                 let _ = write!(text, "\nFILTER {name}: {sentence}");
             }
         }
-        Diagnosis::Unknown {
-            best,
+        Diagnosis::InParts {
+            parts,
             unexplained,
             of,
             pairs,
-        } => text.push_str(&unknown(best, unexplained, *of, *pairs)),
+        } => text.push_str(&in_parts(parts, unexplained, *of, *pairs)),
     }
     text
 }
 
-/// What is said where nothing in the catalogue explains all.
-fn unknown(best: &[&Variant], unexplained: &[String], of: usize, pairs: bool) -> String {
-    let mut text = String::from("\nCAUSE  Nothing in the catalogue, alone or with others, explains every value.\n");
-    if !pairs {
+/// What is said where no one thing explains all.
+fn in_parts(parts: &[Share], unexplained: &[String], of: usize, pairs: bool) -> String {
+    let mut text = if unexplained.is_empty() {
+        String::from("\nMOST LIKELY, IN DIFFERENT CASES\n")
+    } else {
+        String::from("\nCAUSE  Nothing in the catalogue, alone or with others, explains every value.\n")
+    };
+    if !pairs && !unexplained.is_empty() {
         text.push_str("  Of pairs in the same equation not all were tried: the run is long until its first fault.\n");
     }
-    if let Some(first) = best.first() {
-        let _ = writeln!(
-            text,
-            "  This explains {} of the {of} cases with a fault:",
-            of - unexplained.len()
-        );
-        text.push_str(&wrapped(&one(first), "    "));
+    for (index, part) in parts.iter().enumerate() {
+        let _ = match index {
+            0 => writeln!(text, "  This explains {} of the {of} cases with a fault:", part.cases),
+            _ => writeln!(text, "  And this, alone or with the others, {} more:", part.cases),
+        };
+        for (index, variant) in part.variants.iter().enumerate() {
+            let or = if index > 0 { "or " } else { "" };
+            text.push_str(&wrapped(&format!("{or}{}", one(variant)), "    "));
+        }
+    }
+    if !unexplained.is_empty() && !parts.is_empty() {
         let named: Vec<&str> = unexplained.iter().take(5).map(String::as_str).collect();
         let more = if unexplained.len() > named.len() { ", …" } else { "" };
-        let sentence = match named.len() {
-            0 => "but not the cases without one, whose values are right".to_owned(),
-            _ => format!("and leaves unexplained: {}{more}", named.join(", ")),
-        };
-        text.push_str(&wrapped(&sentence, "    "));
+        text.push_str(&wrapped(&format!("Unexplained: {}{more}", named.join(", ")), "  "));
     }
     text
 }
@@ -297,30 +304,7 @@ fn unknown(best: &[&Variant], unexplained: &[String], of: usize, pairs: bool) ->
 fn coverage(report: &Report) -> String {
     let (judged, of) = counts(report);
     let mut text = format!("\nCOVERAGE  {judged} of {of} values of the cases that were asked for were judged.\n");
-    for (finding, sentence) in [
-        (
-            Finding::CannotTell,
-            "cannot be judged: rounding in this precision moves them by as much as their unit",
-        ),
-        (
-            Finding::Undetermined,
-            "are undetermined: they rest on hidden values that are under suspicion",
-        ),
-        (
-            Finding::Stale,
-            "are shown where there are none, without a detection or as covariances of fixed gains, and were passed over",
-        ),
-    ] {
-        let values = report
-            .cases
-            .iter()
-            .flat_map(|case| &case.judgement)
-            .flat_map(|judgement| &judgement.values);
-        let count = values.filter(|value| value.finding == finding).count();
-        if count > 0 {
-            let _ = writeln!(text, "  {count} {sentence}.");
-        }
-    }
+    text.push_str(&passed_over(report));
     for case in &report.cases {
         if let Some(certified) = case.certified {
             let sentence = certified_steps(&case.id, certified, case.dimensions.steps());
@@ -336,10 +320,15 @@ fn coverage(report: &Report) -> String {
         );
         text.push_str(&wrapped(&sentence, "  "));
     }
-    if report.not_asked > 0 {
+    let not_asked = report
+        .not_asked
+        .iter()
+        .filter(|case| case.why != Unasked::Selection)
+        .count();
+    if not_asked > 0 {
         let sentence = format!(
-            "Cases not asked for: {}, of filters or formats that the program does not have, or with input that it leaves to its caller to check.",
-            report.not_asked
+            "Cases not asked for: {not_asked}, of filters or formats that the program does not have, or with input that it leaves to its \
+             caller to check."
         );
         text.push_str(&wrapped(&sentence, "  "));
     }
@@ -351,6 +340,40 @@ fn coverage(report: &Report) -> String {
         Some(false) => text.push_str(
             "  ECHO WRONG: matrix times vector is not what it should be. Does the program read matrices by columns?\n",
         ),
+    }
+    text
+}
+
+/// The values that were shown and not judged, by the reason.
+fn passed_over(report: &Report) -> String {
+    let mut text = String::new();
+    for (finding, sentence) in [
+        (
+            Finding::CannotTell,
+            "cannot be judged: rounding in this precision moves them by as much as their unit",
+        ),
+        (
+            Finding::Undetermined,
+            "are undetermined: they rest on hidden values that are under suspicion",
+        ),
+        (
+            Finding::Unused,
+            "belong to a mode of probability zero, which no output depends on, and were passed over",
+        ),
+        (
+            Finding::Stale,
+            "are shown where there are none, without a detection or as covariances of fixed gains, and were passed over",
+        ),
+    ] {
+        let values = report
+            .cases
+            .iter()
+            .flat_map(|case| &case.judgement)
+            .flat_map(|judgement| &judgement.values);
+        let count = values.filter(|value| value.finding == finding).count();
+        if count > 0 {
+            let _ = writeln!(text, "  {count} {sentence}.");
+        }
     }
     text
 }
@@ -396,6 +419,7 @@ fn summary(report: &Report) -> String {
     let verdict = match (&report.diagnosis, report.is_wrong()) {
         (_, true) => "WRONG",
         (Diagnosis::Nothing, false) if right == 0 => "NOTHING JUDGED",
+        (Diagnosis::Nothing, false) if !report.is_complete() => "RIGHT on what was judged",
         (Diagnosis::Nothing, false) => "RIGHT",
         (_, false) => "RIGHT, but otherwise, see above",
     };

@@ -2,10 +2,12 @@
 //!
 //! After this file the reader knows the same as from the text, for programs: every case, and every value that is not simply right.
 
+use super::behaviour::{in_a_word, why};
 use super::check::{counts, reason, words};
 use crate::imm::Quantity;
+use crate::oracle::behaviour::{Behaviour, Grade, Unasked};
 use crate::oracle::check::Report;
-use crate::oracle::diagnose::Diagnosis;
+use crate::oracle::diagnose::{Diagnosis, Share};
 use crate::oracle::judge::{Finding, Judged};
 use crate::oracle::variant::Variant;
 use serde_json::{Value, json};
@@ -46,12 +48,36 @@ pub fn json(report: &Report) -> Value {
         "echo": report.echo,
         "judged": judged,
         "of": of,
-        "not_asked": report.not_asked,
+        "complete": report.is_complete(),
+        "behaviours": behaviours_json(report),
+        "not_asked": report.not_asked.iter().filter(|case| case.why != Unasked::Selection).count(),
         "never_shown": names(&report.hidden),
         "diagnosis": diagnosis_json(&report.diagnosis),
         "remarks": report.remarks,
         "cases": cases,
     })
+}
+
+/// A row for each family of filters and each behaviour.
+fn behaviours_json(report: &Report) -> Vec<Value> {
+    let of_family = |(family, grades): (&'static str, Vec<(Behaviour, Grade)>)| {
+        grades.into_iter().map(move |(behaviour, grade)| {
+            let (cases, wrong) = match grade {
+                Grade::Right(cases) => (cases, 0),
+                Grade::Wrong(wrong, cases) | Grade::Otherwise(wrong, cases) => (cases, wrong),
+                _ => (0, 0),
+            };
+            json!({
+                "filter": family,
+                "behaviour": behaviour.name(),
+                "verdict": in_a_word(&grade),
+                "reason": why(&grade),
+                "cases": cases,
+                "wrong": wrong,
+            })
+        })
+    };
+    report.grades().into_iter().flat_map(of_family).collect()
 }
 
 fn value_json(value: &Judged, equation: &str, names: &dyn Fn(&[Quantity]) -> Vec<&'static str>) -> Value {
@@ -81,6 +107,7 @@ fn finding(finding: Finding) -> &'static str {
         Finding::Propagated => "propagated",
         Finding::CannotTell => "cannot tell",
         Finding::Undetermined => "undetermined",
+        Finding::Unused => "no output depends on it",
         Finding::Stale => "shown where there is none",
         Finding::NotFinite => "not finite",
         Finding::Fault => "fault",
@@ -103,17 +130,19 @@ fn diagnosis_json(diagnosis: &Diagnosis) -> Value {
             let of_filter = |(name, found): &(String, Diagnosis)| (name.clone(), diagnosis_json(found));
             json!({ "by_filter": filters.iter().map(of_filter).collect::<serde_json::Map<_, _>>() })
         }
-        Diagnosis::Unknown {
-            best,
+        Diagnosis::InParts {
+            parts,
             unexplained,
             of,
             pairs,
-        } => json!({
-            "unknown": true,
-            "pairs_tried": pairs,
-            "best": list(best),
-            "unexplained_by_the_first": unexplained,
-            "faulty_cases": of,
-        }),
+        } => {
+            let of_part = |part: &Share| json!({ "one_of": list(&part.variants), "cases": part.cases });
+            json!({
+                "parts": parts.iter().map(of_part).collect::<Vec<_>>(),
+                "unexplained": unexplained,
+                "faulty_cases": of,
+                "pairs_tried": pairs,
+            })
+        }
     }
 }

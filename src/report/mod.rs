@@ -12,6 +12,7 @@
 //! - [`chart`], [`palette`]: what all figures have in common;
 //! - [`page`]: all of the papers' results in one file.
 
+mod behaviour;
 pub mod cases;
 pub mod chart;
 pub mod check;

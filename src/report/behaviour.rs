@@ -1,0 +1,81 @@
+//! What a program was asked and what not, filter by filter.
+//!
+//! After this file the reader knows the table of behaviours in a verdict, and the words for a grade.
+
+use super::{table, wrapped};
+use crate::oracle::behaviour::{Behaviour, Grade, Unasked};
+use crate::oracle::check::Report;
+use std::collections::BTreeMap;
+
+/// A grade in a word, without its counts.
+pub(super) fn in_a_word(grade: &Grade) -> &'static str {
+    match grade {
+        Grade::Right(_) => "right",
+        Grade::Wrong(..) => "wrong",
+        Grade::Otherwise(..) => "otherwise",
+        Grade::CannotTell => "cannot tell",
+        Grade::Skipped => "skipped",
+        Grade::NotAsked(_) => "not asked",
+        Grade::Impossible(_) => "not there",
+    }
+}
+
+/// Why there is no other grade, if there is none.
+pub(super) fn why(grade: &Grade) -> Option<&'static str> {
+    match grade {
+        Grade::NotAsked(Unasked::Kind) => Some("the cases have filters that the program does not have"),
+        Grade::NotAsked(Unasked::Format) => Some("the cases have a format that the program does not declare"),
+        Grade::NotAsked(Unasked::Validation) => Some("the program leaves bad input to its caller"),
+        Grade::NotAsked(Unasked::Selection) => Some("no such case was selected"),
+        Grade::Impossible(why) => Some(why),
+        _ => None,
+    }
+}
+
+/// What stands in the table.
+fn cell(grade: &Grade) -> String {
+    match grade {
+        Grade::Right(cases) => format!("right {cases}"),
+        Grade::Wrong(wrong, cases) => format!("WRONG {wrong} of {cases}"),
+        Grade::Otherwise(otherwise, cases) => format!("otherwise {otherwise} of {cases}"),
+        Grade::Impossible(_) => "—".to_owned(),
+        other => in_a_word(other).to_owned(),
+    }
+}
+
+/// A row a behaviour and a column a family of filters, and why something was not asked. Nothing of problems that are not published.
+pub(super) fn behaviours(report: &Report) -> String {
+    let grades = report.grades();
+    if grades.is_empty() {
+        return String::new();
+    }
+    let header: Vec<&str> = std::iter::once("what a filter meets")
+        .chain(grades.iter().map(|(family, _)| *family))
+        .collect();
+    let mut table = table(&header);
+    for (index, behaviour) in Behaviour::ALL.into_iter().enumerate() {
+        let cells = grades.iter().map(|(_, of_family)| cell(&of_family[index].1));
+        table.add_row(
+            std::iter::once(behaviour.name().to_owned())
+                .chain(cells)
+                .collect::<Vec<_>>(),
+        );
+    }
+    let mut open: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for (behaviour, grade) in grades.iter().flat_map(|(_, of_family)| of_family) {
+        if let (Grade::NotAsked(_), Some(why)) = (grade, why(grade)) {
+            let names = open.entry(why).or_default();
+            if !names.contains(&behaviour.name()) {
+                names.push(behaviour.name());
+            }
+        }
+    }
+    let mut text = format!("\n{table}\n");
+    for (why, names) in open {
+        text.push_str(&wrapped(
+            &format!("Not asked, since {why}: {}.", names.join(", ")),
+            "  ",
+        ));
+    }
+    text
+}
