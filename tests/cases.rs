@@ -11,11 +11,14 @@ mod published;
 use common::program::names;
 use immaculate::file::digest;
 use immaculate::imm::{Failure, Quantity};
-use immaculate::number::Real;
+use immaculate::matrix::is_positive_definite;
+use immaculate::number::{Rational, Real};
+use immaculate::oracle::behaviour::Behaviour;
 use immaculate::oracle::case::{self, Case, Expected};
 use immaculate::oracle::flags::FLAGS;
-use immaculate::oracle::problem::{FilterFile, MeasurementFile, ModeFile, ProblemFile, Rows};
+use immaculate::oracle::problem::{FAMILIES, FilterFile, MeasurementAt, MeasurementFile, ModeFile, ProblemFile, Rows};
 use immaculate::oracle::trace::Trace;
+use nalgebra::DMatrix;
 use published::write::write;
 use published::{all, rejected};
 use serde_json::{Value, json};
@@ -79,7 +82,7 @@ fn every_problem_has_a_purpose_and_numbers_of_its_own() {
 fn there_are_many_short_problems_and_few_long_ones() {
     let problems = all();
     let long = problems.iter().filter(|problem| problem.measurements.len() > 6).count();
-    assert!((70..150).contains(&problems.len()), "{}", problems.len());
+    assert!((70..220).contains(&problems.len()), "{}", problems.len());
     assert!(long < 20, "{long}");
     for problem in &problems {
         let steps = problem.measurements.len();
@@ -253,6 +256,12 @@ fn flags_of_detections_and_outliers_are_true() {
         let in_a_row = missed.windows(2).any(|pair| pair == [true, true]);
         assert_eq!(has(&problem, "missed-in-a-row"), in_a_row, "{id}");
 
+        let is_partial = |entry: &MeasurementAt| entry.entries().count() < entry.z.as_ref().map_or(0, Vec::len);
+        assert_eq!(
+            has(&problem, "missing-entry"),
+            problem.measurements.iter().any(is_partial),
+            "{id}"
+        );
         let run = run(&problem);
         let mut greatest = BTreeMap::new();
         for (step, _, value) in run.each(Quantity::LogLikelihood) {
@@ -261,6 +270,45 @@ fn flags_of_detections_and_outliers_are_true() {
         }
         let underflows = greatest.values().any(|&best| libm::exp(best) == 0.0);
         assert_eq!(has(&problem, "outlier"), underflows, "{id}: {greatest:?}");
+    }
+}
+
+/// What is asked of one kind of filter is asked of every other, or it has no such thing.
+#[test]
+fn every_filter_meets_every_behaviour_or_a_reason_says_why_not() {
+    for family in FAMILIES {
+        for behaviour in Behaviour::ALL {
+            let has_family =
+                |problem: &ProblemFile| (0..problem.modes.len()).any(|mode| problem.filter_of(mode).family() == family);
+            let meets = |problem: &&ProblemFile| has_family(problem) && Behaviour::of(problem).contains(&behaviour);
+            let cases = all().iter().filter(meets).count();
+            let reason = behaviour.impossible_for(family);
+            assert_eq!(
+                cases == 0,
+                reason.is_some(),
+                "{family}, {}: {cases} cases, {reason:?}",
+                behaviour.name()
+            );
+        }
+    }
+}
+
+#[test]
+fn flags_of_exact_estimates_and_measurements_are_true() {
+    for problem in all() {
+        let id = &problem.id;
+        let is_singular = |rows: &Rows| {
+            let exact = |row: usize, column: usize| Rational::from_f64(rows[row][column]);
+            !is_positive_definite(&DMatrix::from_fn(rows.len(), rows.len(), exact))
+        };
+        let mut given = problem
+            .initial
+            .modes
+            .iter()
+            .filter_map(|estimate| estimate.covariance.as_ref());
+        // What a mode lacks is not known exactly: it is not there.
+        let is_exact = is_singular(&problem.noise) || (!has(&problem, "embedded") && given.any(is_singular));
+        assert_eq!(has(&problem, "exact"), is_exact, "{id}");
     }
 }
 
@@ -305,12 +353,13 @@ fn flags_of_filters_and_angles_are_true() {
             let of = |quantity| run.values.get(step, quantity, mode).unwrap();
             let predicted = of(Quantity::PredictedMeasurement);
             let s = of(Quantity::InnovationCovariance);
-            let z = problem.measurements[step - 1].z.as_ref().unwrap();
-            let m = z.len();
-            let sensor = problem.sensor_of(&problem.measurements[step - 1]).unwrap();
+            let entry = &problem.measurements[step - 1];
+            let sensor = problem.sensor_of(entry).unwrap();
             let angles = problem.angles_of(&problem.sensors_at()[sensor]);
-            for row in (0..m).filter(|&row| angles[row] && !is_converted) {
-                wraps |= (z[row] - predicted[row] - innovation[row]).abs() > 1.0;
+            let m = entry.entries().count();
+            let is_angle = |(_, (place, _)): &(usize, (usize, f64))| angles[*place] && !is_converted;
+            for (row, (_, z)) in entry.entries().enumerate().filter(is_angle) {
+                wraps |= (z - predicted[row] - innovation[row]).abs() > 1.0;
                 // A point of every rule in use lies beyond one standard deviation.
                 straddles |= has_points && predicted[row].abs() + s[row * m + row].sqrt() > f64::pi();
             }

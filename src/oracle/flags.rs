@@ -3,7 +3,7 @@
 //! After this file the reader knows every word by which cases are marked and chosen, and what a problem with it is like.
 
 /// Every flag, and what a problem with it is like.
-pub const FLAGS: [(&str, &str); 49] = [
+pub const FLAGS: [(&str, &str); 53] = [
     (
         "single-equation",
         "All is trivial but one equation, or one group of them.",
@@ -124,5 +124,18 @@ pub const FLAGS: [(&str, &str); 49] = [
         "state-angle",
         "An entry of the state is an angle, and estimates lie on both sides of its cut at pi.",
     ),
+    (
+        "missing-entry",
+        "An entry of a measurement is missing, and the others are there.",
+    ),
+    (
+        "exact",
+        "An initial estimate or a measurement has no error in some direction: its covariance is singular.",
+    ),
+    (
+        "several-sensors",
+        "Sensors take turns, each with its own function and noise.",
+    ),
+    ("input", "A known input, or another offset, is part of the motion."),
     ("rejected", "It must be refused."),
 ];

@@ -14,7 +14,7 @@ pub fn all() -> Vec<ProblemFile> {
 }
 
 /// The target west of the sensor on its way south: its bearing grows beyond π.
-fn west(rule: &str) -> Draft {
+pub(super) fn west(rule: &str) -> Draft {
     let means = [
         [-190.0, -3.0, 45.0, -14.0],
         [-181.0, -5.4, 37.0, -11.5],
@@ -30,7 +30,7 @@ fn west(rule: &str) -> Draft {
 }
 
 /// The mirror image: entries of the state and of the sensor's place change their signs, and every bearing becomes `bearing` of it.
-fn mirrored(draft: Draft, state: [f64; 4], sensor: [f64; 2], bearing: impl Fn(f64) -> f64) -> Draft {
+pub(super) fn mirrored(draft: Draft, state: [f64; 4], sensor: [f64; 2], bearing: impl Fn(f64) -> f64) -> Draft {
     draft.with(|problem| {
         let both = |row: usize, column: usize, entry: f64| state[row] * state[column] * entry;
         for mode in &mut problem.modes {
@@ -50,7 +50,7 @@ fn mirrored(draft: Draft, state: [f64; 4], sensor: [f64; 2], bearing: impl Fn(f6
             |row, column, entry| if row == column { entry } else { -entry },
         );
         for z in problem.measurements.iter_mut().filter_map(|entry| entry.z.as_mut()) {
-            z[1] = rounded(bearing(z[1]));
+            z[1] = z[1].map(|value| rounded(bearing(value)));
         }
     })
 }

@@ -163,6 +163,9 @@ impl Draft {
         let problem = &mut self.0;
         problem.modes = places.iter().map(|&j| problem.modes[j].clone()).collect();
         problem.initial.modes = places.iter().map(|&j| problem.initial.modes[j].clone()).collect();
+        if let FilterFile::FixedGain { modes, .. } = &mut problem.filter {
+            *modes = places.iter().map(|&j| modes[j].clone()).collect();
+        }
         match places.len() {
             1 => self.chain(rows([[1.0]]), &[1.0]),
             2 => self.chain(rows([[0.9, 0.1], [0.25, 0.75]]), &[0.6, 0.4]),
@@ -187,7 +190,7 @@ impl Draft {
     pub fn sees_or_misses<const M: usize>(mut self, measurements: &[Option<[f64; M]>]) -> Self {
         let entry = |(place, z): (usize, &Option<[f64; M]>)| MeasurementAt {
             step: place + 1,
-            z: z.map(|z| z.to_vec()),
+            z: z.map(|z| seen(&z)),
             ..MeasurementAt::default()
         };
         self.0.measurements = measurements.iter().enumerate().map(entry).collect();
@@ -234,4 +237,9 @@ impl Draft {
             ..self.0
         }
     }
+}
+
+/// A measurement of which nothing is missing.
+pub fn seen(z: &[f64]) -> Vec<Option<f64>> {
+    z.iter().copied().map(Some).collect()
 }

@@ -5,7 +5,7 @@
 
 use super::draft::{Draft, covariance, map, rounded, rows};
 use super::scene::{PLANE_TRACK, RADAR_TRACK, plane, radar};
-use immaculate::oracle::problem::{FORMAT_2, FilterFile, MeasurementFile, ProblemFile};
+use immaculate::oracle::problem::{FORMAT_2, FilterFile, MeasurementFile, ProblemFile, Rows};
 use serde_json::{Value, json};
 
 /// The problems of this file.
@@ -14,7 +14,7 @@ pub fn all() -> Vec<ProblemFile> {
 }
 
 /// A draft with extended filters.
-fn extended(draft: Draft) -> Draft {
+pub(super) fn extended(draft: Draft) -> Draft {
     draft
         .filter(FilterFile::Extended {})
         .with(|problem| problem.format = FORMAT_2.into())
@@ -206,6 +206,31 @@ fn chains() -> Vec<ProblemFile> {
     ]
 }
 
+/// The radar's scene in kilometres, the sensor with it, with noise of the measurement in kilometres.
+pub(super) fn in_kilometres(draft: Draft, noise: Rows) -> Draft {
+    draft.with(|problem| {
+        let unit = |entry: f64| rounded(entry * 1e-3);
+        for mode in &mut problem.modes {
+            mode.noise = map(&mode.noise, |_, _, entry| entry * 1e-6);
+        }
+        for estimate in &mut problem.initial.modes {
+            estimate.mean.iter_mut().for_each(|entry| *entry = unit(*entry));
+            estimate.covariance = estimate
+                .covariance
+                .as_ref()
+                .map(|rows| map(rows, |_, _, entry| entry * 1e-6));
+        }
+        if let MeasurementFile::RangeBearing { sensor, .. } = &mut problem.measurement {
+            *sensor = sensor.map(unit);
+        }
+        problem.noise = noise;
+        problem.units = ["km", "km/s", "km", "km/s"].map(String::from).to_vec();
+        for z in problem.measurements.iter_mut().filter_map(|entry| entry.z.as_mut()) {
+            z[0] = z[0].map(|range| rounded(range / 1000.0));
+        }
+    })
+}
+
 fn numbers() -> Vec<ProblemFile> {
     let embedded = |problem: &mut ProblemFile| {
         problem.modes[1].transition[3] = vec![0.0; 4];
@@ -232,24 +257,7 @@ fn numbers() -> Vec<ProblemFile> {
                 &["sequence", "embedded", "unequal-dimensions", "zeros"],
                 "A mode without the last entry of the state, whose covariances have a row of zeros there, under extended filters.",
             ),
-        extended(radar("cubature-3"))
-            .with(|problem| {
-                // The whole scene in kilometres, the sensor with it.
-                let unit = |entry: f64| entry * 1e-3;
-                for mode in &mut problem.modes {
-                    mode.noise = map(&mode.noise, |_, _, entry| entry * 1e-6);
-                }
-                for estimate in &mut problem.initial.modes {
-                    estimate.mean.iter_mut().for_each(|entry| *entry = rounded(unit(*entry)));
-                    estimate.covariance = estimate.covariance.as_ref().map(|rows| map(rows, |_, _, entry| entry * 1e-6));
-                }
-                if let MeasurementFile::RangeBearing { sensor, .. } = &mut problem.measurement {
-                    *sensor = sensor.map(|entry| rounded(unit(entry)));
-                }
-                problem.noise = covariance(&[0.009, 0.055], &[0.3]);
-                problem.units = ["km", "km/s", "km", "km/s"].map(String::from).to_vec();
-            })
-            .sees(&RADAR_TRACK.map(|[range, bearing]| [rounded(range / 1000.0), bearing])[..3])
+        in_kilometres(extended(radar("cubature-3")).sees(&RADAR_TRACK[..3]), covariance(&[0.009, 0.055], &[0.3]))
             .named(
                 "extended.units",
                 &["sequence", "units", "full-correlation"],
@@ -258,42 +266,43 @@ fn numbers() -> Vec<ProblemFile> {
     ]
 }
 
+/// F, Q, R and chain become others in each of five steps.
+pub(super) fn changing(draft: Draft) -> Draft {
+    let scaled = |rows: &Rows, factor: f64| map(rows, |_, _, entry| entry * factor);
+    draft.with(|problem| {
+        problem.format = FORMAT_2.into();
+        let modes = problem.modes.clone();
+        let noise = problem.noise.clone();
+        for (index, entry) in problem.measurements.iter_mut().enumerate() {
+            let factor = [1.0, 0.6, 1.7, 1.2, 0.8][index];
+            if index != 2 {
+                entry.transitions = Some(
+                    modes
+                        .iter()
+                        .map(|mode| {
+                            map(
+                                &mode.transition,
+                                |row, column, entry| if row == column { entry } else { entry * factor },
+                            )
+                        })
+                        .collect(),
+                );
+            }
+            if index != 1 {
+                entry.noises = Some(modes.iter().map(|mode| scaled(&mode.noise, factor)).collect());
+            }
+            if index % 2 == 0 {
+                entry.noise = Some(scaled(&noise, 2.0 - factor / 2.0));
+            }
+        }
+        problem.measurements[3].transition = Some(rows([[0.7, 0.3], [0.15, 0.85]]));
+    })
+}
+
 /// Kalman filters whose F, Q, R and chain are others in each step.
 fn steps() -> Vec<ProblemFile> {
-    let scaled = |rows: &Vec<Vec<f64>>, factor: f64| map(rows, |_, _, entry| entry * factor);
-    let problem = plane()
-        .keep(&[0, 1])
-        .sees(&PLANE_TRACK[..5])
-        .without(&[4])
-        .with(|problem| {
-            problem.format = FORMAT_2.into();
-            let modes = problem.modes.clone();
-            let noise = problem.noise.clone();
-            for (index, entry) in problem.measurements.iter_mut().enumerate() {
-                let factor = [1.0, 0.6, 1.7, 1.2, 0.8][index];
-                if index != 2 {
-                    entry.transitions = Some(
-                        modes
-                            .iter()
-                            .map(|mode| {
-                                map(
-                                    &mode.transition,
-                                    |row, column, entry| if row == column { entry } else { entry * factor },
-                                )
-                            })
-                            .collect(),
-                    );
-                }
-                if index != 1 {
-                    entry.noises = Some(modes.iter().map(|mode| scaled(&mode.noise, factor)).collect());
-                }
-                if index % 2 == 0 {
-                    entry.noise = Some(scaled(&noise, 2.0 - factor / 2.0));
-                }
-            }
-            problem.measurements[3].transition = Some(rows([[0.7, 0.3], [0.15, 0.85]]));
-        });
-    vec![problem.named(
+    let problem = plane().keep(&[0, 1]).sees(&PLANE_TRACK[..5]).without(&[4]);
+    vec![changing(problem).named(
         "steps.changing",
         &["sequence", "missed-detection", "changing-steps", "row-order", "transition-order", "full-correlation"],
         "Five steps of different lengths: F, Q and R are others in almost every one, and the chain in the fourth, which has no detection. A filter \

@@ -22,7 +22,7 @@ pub fn all() -> Vec<ProblemFile> {
     [single_steps(), several(), derbez2000()].concat()
 }
 
-const MIXED: &str = "mixed";
+pub(super) const MIXED: &str = "mixed";
 
 /// A gain and an innovation covariance.
 fn given(gain: Rows, innovation_covariance: Rows) -> FixedGainFile {

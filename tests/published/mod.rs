@@ -11,10 +11,13 @@
 //! - `converted`: filters that convert their measurements, modes of unequal dimensions, and the scenario of the paper that has both;
 //! - `fixed_gain`: filters whose gains are given, and the scenario of the paper that has them;
 //! - `extended`: extended filters, several sensors, and steps that differ;
+//! - `partial`: measurements of which an entry is missing, and what is exact in a direction;
+//! - `behaviours`: for each kind of filter what it has in none of the others;
 //! - `rejected`: problems that must be refused;
 //! - `write`: how a new case is certified, written and locked.
 
 mod angles;
+mod behaviours;
 mod chain;
 mod converted;
 mod draft;
@@ -22,6 +25,7 @@ mod equations;
 mod extended;
 mod fixed_gain;
 mod numbers;
+mod partial;
 mod rejected;
 mod rules;
 mod runs;
@@ -46,6 +50,8 @@ pub fn all() -> Vec<ProblemFile> {
         fixed_gain::all(),
         converted::all(),
         extended::all(),
+        partial::all(),
+        behaviours::all(),
     ]
     .concat()
 }

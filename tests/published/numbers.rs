@@ -67,7 +67,7 @@ fn far() -> Vec<ProblemFile> {
 }
 
 /// The scene in other units: every entry of the state and of the measurement times its factor.
-fn scaled(draft: Draft, state: [f64; 4], measured: f64) -> Draft {
+pub(super) fn scaled(draft: Draft, state: [f64; 4], measured: f64) -> Draft {
     draft.with(|problem| {
         let product = |row: usize, column: usize, entry: f64| state[row] * state[column] * entry;
         for mode in &mut problem.modes {
@@ -86,7 +86,7 @@ fn scaled(draft: Draft, state: [f64; 4], measured: f64) -> Draft {
         }
         problem.noise = map(&problem.noise, |_, _, entry| entry * (measured * measured));
         for z in problem.measurements.iter_mut().filter_map(|entry| entry.z.as_mut()) {
-            for value in z {
+            for value in z.iter_mut().flatten() {
                 *value = rounded(*value * measured);
             }
         }

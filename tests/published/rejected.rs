@@ -4,7 +4,7 @@
 //! so that a program that refuses it refuses it for that.
 
 use super::converted::converted;
-use super::draft::Draft;
+use super::draft::{Draft, seen};
 use super::fixed_gain::plane_with_gains;
 use super::scene::{plane, radar};
 use immaculate::model::Conversion;
@@ -84,7 +84,7 @@ fn shapes() -> Vec<Rejected> {
             "rejected.shape.measurement",
             Class::Shape,
             "the measurement has three entries where R is 2 x 2",
-            |problem| problem.measurements[0].z = Some(vec![160.0, -35.0, 1.0]),
+            |problem| problem.measurements[0].z = Some(seen(&[160.0, -35.0, 1.0])),
         ),
         linear(
             "rejected.shape.modes",
@@ -181,7 +181,7 @@ fn unknown() -> Vec<Rejected> {
             "rejected.angle.degrees",
             Class::Angle,
             "its bearing is in degrees",
-            |problem| problem.measurements[0].z = Some(vec![207.0, -23.5]),
+            |problem| problem.measurements[0].z = Some(seen(&[207.0, -23.5])),
         ),
     ]
 }
@@ -235,7 +235,7 @@ fn conversions() -> Vec<Rejected> {
             "rejected.range.negative",
             Class::Range,
             "its range is negative",
-            |problem| problem.measurements[0].z = Some(vec![-207.0, -0.41]),
+            |problem| problem.measurements[0].z = Some(seen(&[-207.0, -0.41])),
         ),
         convert(
             "rejected.unknown.conversion",

@@ -110,11 +110,16 @@ fn zhu2016() -> Vec<ProblemFile> {
     ]
 }
 
+/// The first forty steps of liu2017's scenario.
+pub(super) fn liu2017_run(filter: FilterFile) -> Draft {
+    scene(Paper::Liu2017, 1, 40).filter(filter)
+}
+
 fn liu2017() -> Vec<ProblemFile> {
     let flags = ["published-scenario", "run", "zeros"];
     let run = |id: &str, filter: FilterFile, more: &[&str], about: &str| {
         let flags = [&flags[..], more].concat();
-        scene(Paper::Liu2017, 1, 40).filter(filter).named(id, &flags, about)
+        liu2017_run(filter).named(id, &flags, about)
     };
     vec![
         run(

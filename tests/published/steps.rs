@@ -3,7 +3,7 @@
 //! After this file the reader knows the problems in which nothing is trivial and nothing is special. A filter that is right on these is
 //! right, apart from what the other files of this folder are for.
 
-use super::draft::{covariance, filter, map, rows, unscented};
+use super::draft::{covariance, filter, map, rows, seen, unscented};
 use super::scene::{PLANE_TRACK, RADAR_TRACK, SENSOR, axis, derivatives, plane, radar, scalar};
 use immaculate::oracle::problem::{MeasurementFile, ProblemFile};
 
@@ -95,7 +95,7 @@ fn components() -> Vec<ProblemFile> {
                 components.reverse();
             }
             problem.noise = covariance(&[0.055, 9.0], &[0.3]);
-            problem.measurements[0].z = Some(vec![-0.41, 207.0]);
+            problem.measurements[0].z = Some(seen(&[-0.41, 207.0]));
         })
         .named(
             "step.bearing-range",
