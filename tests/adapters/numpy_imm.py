@@ -22,7 +22,7 @@ import argparse
 import json
 import math
 import sys
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -55,6 +55,8 @@ def ready(message, options):
         ),  # CHANGE HERE
         "precision": "single" if options.single else "double",
         "conventions": options.conventions,
+        "formats": ["immaculate-problem/1", "immaculate-problem/2"],
+        "kinds": ["kalman", "extended", "unscented", "converted", *RULES],
         "echo": (np.array(echo["matrix"]) @ np.array(echo["vector"])).tolist(),
     }
 
@@ -65,10 +67,12 @@ def ready(message, options):
 def run(problem, options):
     """Runs a problem as far as it goes."""
     answer = {"type": "answer", "id": problem["id"], "steps": []}
-    if problem["filter"]["kind"] == "fixed-gain":
-        return skipped(problem, "there are no fixed gains here")
+    reason = not_here(problem)
+    if reason:
+        return skipped(problem, reason)
     try:
-        check_problem(problem)
+        if problem["format"] == "immaculate-problem/1":
+            check_problem(problem)
         arguments = arguments_of(problem, options)
     except Rejected as rejected:
         return {
@@ -80,7 +84,10 @@ def run(problem, options):
     try:
         imm = filter_class(options)(**arguments)  # CHANGE HERE: make your filter
         for entry in problem["measurements"]:
-            z = None if entry["z"] is None else np.array(entry["z"], arguments["number"])
+            imm.given(**step_arguments(problem, entry, options))
+            z = None if entry["z"] is None else np.array(entry["z"], float)
+            if z is not None:
+                z = z[~np.isnan(z)].astype(arguments["number"])
             step = imm.step(z)  # CHANGE HERE: one step of your filter
             answer["steps"].append(shown(entry["step"], step, options.show))
     except (np.linalg.LinAlgError, ValueError) as error:
@@ -88,6 +95,19 @@ def run(problem, options):
             return skipped(problem, "the information form needs covariances with an inverse")
         answer["error"] = f"step {len(answer['steps']) + 1}: {error}"
     return answer
+
+
+def not_here(problem):
+    """What the filter below does not have; None if it has everything."""
+    if problem["filter"]["kind"] == "fixed-gain":
+        return "there are no fixed gains here"
+    if any("filter" in mode for mode in problem["modes"]):
+        return "there is one filter for all modes here"
+    if any("motion" in mode or isinstance(mode["Q"], dict) for mode in problem["modes"]):
+        return "there are no named models here; formulas are"
+    if any(isinstance(name, list) and "angle" in name[2:] for name in problem["state"]):
+        return "there are no angles in the state here"
+    return None
 
 
 def skipped(problem, reason):
@@ -98,22 +118,9 @@ def skipped(problem, reason):
 def arguments_of(problem, options):
     """The problem as the arguments of the filter below. CHANGE HERE: as the arguments of yours."""
     number = np.float32 if options.single else np.float64
-    n = len(problem["state"])
-    kind = problem["filter"]["kind"]
-    converts = kind == "converted"
-    points = None if kind == "kalman" or converts else rule(problem["filter"], n)
-    angle_mean = options.conventions.get("angle_mean", "centre-point")
+    has_points = problem["filter"]["kind"] in ("cubature", "unscented")
+    points = rule(problem["filter"], len(problem["state"])) if has_points else None
     return {
-        "transition_matrices": [np.array(mode["F"], number) for mode in problem["modes"]],
-        "process_noises": [np.array(mode["Q"], number) for mode in problem["modes"]],
-        "measurement": (
-            Measurement.of_position(problem["measurement"], n, number)
-            if converts
-            else Measurement.of(problem["measurement"], number, angle_mean)
-        ),
-        "measurement_noise": np.array(problem["R"], number),
-        "conversion": Conversion.of(problem, number) if converts else None,
-        "chain": np.array(problem["transition"], number),
         "mode_probabilities": np.array(problem["initial"]["mode_probabilities"], number),
         "means": [np.array(estimate["mean"], number) for estimate in problem["initial"]["modes"]],
         "covariances": [
@@ -121,10 +128,61 @@ def arguments_of(problem, options):
         ],
         "rule": points and tuple(part.astype(number) for part in points),
         "square_root": SQUARE_ROOTS[options.conventions.get("square_root", "cholesky-lower")],
-        "mixes_first": options.conventions.get("first_step", "mixed") == "mixed",
+        "first_step": options.conventions.get("first_step", "mixed"),
         "has_two_pi": options.conventions.get("log_likelihood", "full") == "full",
+        "linearises": problem["filter"]["kind"] == "extended",
         "number": number,
     }
+
+
+def step_arguments(problem, entry, options):
+    """What may be another in each step: models, noises, chain. In format 1 it never is."""
+    number = np.float32 if options.single else np.float64
+    names = [name if isinstance(name, str) else name[0] for name in problem["state"]]
+    others = {sensor["name"]: sensor for sensor in problem.get("sensors", [])}
+    sensor = others[entry["sensor"]] if "sensor" in entry else problem
+    parameters = {**sensor["measurement"], **({"H": entry["H"]} if "H" in entry else {})}
+    known = dict(problem.get("parameters", {}))
+    if "T" in entry:
+        known["T"] = entry["T"]
+    noise = np.array(entry.get("R", sensor["R"]), number)
+    conversion = None
+    if problem["filter"]["kind"] == "converted":
+        conversion = Conversion.of(problem["filter"], parameters, noise)
+        measurement = Measurement.of_position(parameters, len(names), number)
+    else:
+        angle_mean = options.conventions.get("angle_mean", "centre-point")
+        formulas = Formulas(names, known, problem.get("let", []), parameters.get("h", []))
+        measurement = Measurement.of(parameters, formulas, number, angle_mean)
+    there = [row for row, value in enumerate(entry["z"] or []) if value is not None]
+    if there and len(there) < len(noise):
+        measurement, noise = measurement.only(there), noise[np.ix_(there, there)]
+    motions, process_noises = [], []
+    for j, mode in enumerate(problem["modes"]):
+        of_mode = {**known, **mode.get("parameters", {})}
+        definitions = problem.get("let", []) + mode.get("let", [])
+        if "f" in mode and "F" not in entry:
+            motions.append(Motion(formulas=Formulas(names, of_mode, definitions, mode["f"])))
+        else:
+            matrix = entry["F"][j] if "F" in entry else mode["F"]
+            motions.append(Motion(matrix=np.array(matrix, number)))
+        rows = entry["Q"][j] if "Q" in entry else noise_of(mode, names, of_mode, definitions)
+        process_noises.append(np.array(rows, number))
+    return {
+        "motions": motions,
+        "process_noises": process_noises,
+        "measurement": measurement,
+        "measurement_noise": noise,
+        "conversion": conversion,
+        "chain": np.array(entry.get("transition", problem["transition"]), number),
+    }
+
+
+def noise_of(mode, names, known, definitions):
+    """Q, which may have formulas; they do not know the state."""
+    n = len(names)
+    texts = [str(value) for row in mode["Q"] for value in row]
+    return Formulas(names, known, definitions, texts).of(np.full(n, np.nan)).reshape(n, n)
 
 
 def shown(number, step, show):
@@ -143,8 +201,9 @@ def shown(number, step, show):
             mode["mixing_probabilities"] = values.mixing_probabilities.tolist()
             mode["mixed"] = estimate(values.mixed)
             mode["predicted"] = estimate(values.predicted)
-            if values.innovation is not None:
-                for name in MEASURED:
+            names = ["motion_jacobian"] + (MEASURED if values.innovation is not None else [])
+            for name in names:
+                if getattr(values, name) is not None:
                     mode[name] = getattr(values, name).tolist()
     return listed
 
@@ -152,6 +211,7 @@ def shown(number, step, show):
 MEASURED = [
     "predicted_measurement",
     "innovation",
+    "measurement_jacobian",
     "innovation_covariance",
     "cross_covariance",
     "gain",
@@ -184,11 +244,10 @@ def check_problem(problem):
         check_probabilities(f"transition[{i}]", row)
     check_probabilities("initial.mode_probabilities", problem["initial"]["mode_probabilities"])
     for j, mode in enumerate(problem["modes"]):
-        check_covariance(f"modes[{j}].Q", mode["Q"], semidefinite=True)
+        check_covariance(f"modes[{j}].Q", mode["Q"])
     check_covariance("R", problem["R"])
     for j, initial in enumerate(problem["initial"]["modes"]):
-        place = f"initial.modes[{j}].covariance"
-        check_initial_covariance(place, initial["covariance"], problem["modes"][j])
+        check_covariance(f"initial.modes[{j}].covariance", initial["covariance"])
     check_names(problem, n)
     check_ranges_and_bearings(problem)
 
@@ -231,8 +290,8 @@ def check_probabilities(place, values):
         raise Rejected("not-a-probability", f"{place} is {values}")
 
 
-def check_covariance(place, rows, semidefinite=False):
-    """Symmetric, and positive definite or semidefinite."""
+def check_covariance(place, rows):
+    """Symmetric, and positive semidefinite."""
     matrix = np.array(rows, float)
     if not np.array_equal(matrix, matrix.T):
         raise Rejected("not-symmetric", f"{place} is not symmetric")
@@ -240,17 +299,10 @@ def check_covariance(place, rows, semidefinite=False):
     deviations = np.sqrt(np.maximum(np.diag(matrix), 0))
     units = np.where(deviations > 0, deviations, 1)
     least = np.linalg.eigvalsh(matrix / np.outer(units, units))[0]
-    if least < (-1e-14 * len(matrix) if semidefinite else 1e-15):
+    if least < -1e-14 * len(matrix):
         raise Rejected(
             "not-positive-definite", f"{place} has the eigenvalue {least} in units of its diagonal"
         )
-
-
-def check_initial_covariance(place, rows, mode):
-    """Positive definite, but for entries that the mode sets to zero: their rows may be zeros."""
-    matrix = np.array(rows, float)
-    lacking = ~np.any(np.hstack([mode["F"], mode["Q"], matrix]), axis=1)
-    check_covariance(place, matrix + np.diag(lacking))
 
 
 def check_names(problem, n):
@@ -309,6 +361,10 @@ def check_ranges_and_bearings(problem):
 
 
 # ------------------------------------------------------ the filter: rules and measurements
+
+
+RULES = ["cubature-3", "cubature-5", "simplex-5"]
+RULES += [f"gauss-hermite-{nodes}" for nodes in (2, 3, 4, 5)]
 
 
 def rule(parameters, n):
@@ -410,9 +466,68 @@ def wrapped(angle):
     return angle - 2 * math.pi * turns
 
 
+def atan2(y, x):
+    """The angle of (x, y), for complex numbers to first order in their imaginary parts."""
+    slope = x.real * y.imag - y.real * x.imag
+    angle = np.arctan2(y.real, x.real)
+    return angle + 1j * slope / (x.real**2 + y.real**2) if np.iscomplexobj(y + x) else angle
+
+
+def stumpff(k, t):
+    """c_k(t), the sum over j of (-t)^j / (2j + k)!."""
+    return sum((-t) ** j / math.factorial(2 * j + k) for j in range(25))
+
+
+FUNCTIONS = {"__builtins__": {}, "pi": math.pi, "atan2": atan2, "ln": np.log}
+FUNCTIONS |= {name: getattr(np, name) for name in ("sqrt", "exp", "sin", "cos", "tan")}
+FUNCTIONS |= {"hypot": lambda x, y: np.sqrt(x * x + y * y)}
+FUNCTIONS |= {f"c{k}": lambda t, k=k: stumpff(k, t) for k in range(10)}
+
+
+class Formulas:
+    """Formulas of the entries of a state: Python but for `^`. Known names have numbers."""
+
+    def __init__(self, names, known, definitions, texts):
+        written = [text.replace("^", "**") for text in texts]
+        self.names, self.known = names, known
+        self.definitions = [(name, text.replace("^", "**")) for name, text in definitions]
+        self.texts = written
+
+    def of(self, state):
+        """The values at a state."""
+        values = {**self.known, **dict(zip(self.names, state))}
+        for name, text in self.definitions:
+            values[name] = eval(text, FUNCTIONS, values)
+        return np.array([eval(text, FUNCTIONS, values) for text in self.texts])
+
+    def jacobian(self, state):
+        """The slopes, by a step along the imaginary axis: exact to rounding."""
+        step = 1e-30
+        columns = [self.of(state + 1j * step * unit).imag / step for unit in np.eye(len(state))]
+        return np.stack(columns, axis=1).astype(state.dtype)
+
+
+@dataclass
+class Motion:
+    """F x, or formulas."""
+
+    matrix: np.ndarray = None
+    formulas: Formulas = None
+
+    def of(self, state):
+        """The next state."""
+        if self.matrix is not None:
+            return self.matrix @ state
+        return self.formulas.of(state).astype(state.dtype)
+
+    def slope(self, state):
+        """F, or the Jacobian."""
+        return self.matrix if self.matrix is not None else self.formulas.jacobian(state)
+
+
 @dataclass
 class Measurement:
-    """What the sensor sees: H x, or ranges and bearings."""
+    """What the sensor sees: H x, ranges and bearings, or formulas."""
 
     number: type
     matrix: np.ndarray = None
@@ -420,16 +535,44 @@ class Measurement:
     position: list = None
     sensor: np.ndarray = None
     angle_mean: str = "centre-point"
+    formulas: Formulas = None
 
     @staticmethod
-    def of(parameters, number, angle_mean):
+    def of(parameters, formulas, number, angle_mean):
         """From the problem's object."""
         if parameters["kind"] == "linear":
             return Measurement(number, matrix=np.array(parameters["H"], number))
+        if parameters["kind"] == "formulas":
+            angles = ["bearing" if "angle" in entry[2:] else "number" for entry in parameters["z"]]
+            return Measurement(number, None, angles, angle_mean=angle_mean, formulas=formulas)
         sensor = np.array(parameters["sensor"], number)
         return Measurement(
             number, None, parameters["components"], parameters["position"], sensor, angle_mean
         )
+
+    def only(self, rows):
+        """What is left of it where entries are missing."""
+        matrix = None if self.matrix is None else self.matrix[rows]
+        formulas = self.formulas
+        if formulas is not None:
+            texts = [formulas.texts[row] for row in rows]
+            formulas = Formulas(formulas.names, formulas.known, formulas.definitions, texts)
+        components = [self.components[row] for row in rows] if self.components else []
+        return replace(self, matrix=matrix, components=components, formulas=formulas)
+
+    def slope(self, state):
+        """H, or the Jacobian."""
+        if self.matrix is not None:
+            return self.matrix
+        if self.formulas is not None:
+            return self.formulas.jacobian(state)
+        dx, dy = state[self.position] - self.sensor
+        square = dx**2 + dy**2
+        radial, across = np.array([dx, dy]) / np.sqrt(square), np.array([-dy, dx]) / square
+        rows = {"range": radial, "bearing": across}
+        jacobian = np.zeros((len(self.components), len(state)), self.number)
+        jacobian[:, self.position] = [rows[name] for name in self.components]
+        return jacobian
 
     @staticmethod
     def of_position(parameters, n, number):
@@ -440,6 +583,8 @@ class Measurement:
         """The measurements of states, one a row."""
         if self.matrix is not None:
             return states @ self.matrix.T
+        if self.formulas is not None:
+            return np.stack([self.formulas.of(state) for state in states]).astype(self.number)
         dx, dy = (states[:, self.position] - self.sensor).T
         columns = {"range": np.sqrt(dx**2 + dy**2), "bearing": np.arctan2(dy, dx)}
         return np.stack([columns[name] for name in self.components], axis=1)
@@ -481,13 +626,11 @@ class Conversion:
     bearing_variance: np.floating
 
     @staticmethod
-    def of(problem, number):
-        """From the problem."""
-        measurement = problem["measurement"]
+    def of(parameters, measurement, noise):
+        """From the problem's objects and the noise of range and bearing."""
         rows = [measurement["components"].index(name) for name in ("range", "bearing")]
-        sensor = np.array(measurement["sensor"], number)
-        variances = np.diag(np.array(problem["R"], number))[rows]
-        return Conversion(problem["filter"]["conversion"], rows, sensor, *variances)
+        sensor = np.array(measurement["sensor"], noise.dtype)
+        return Conversion(parameters["conversion"], rows, sensor, *np.diag(noise)[rows])
 
     def factor(self):
         """What the position is multiplied by, against the bias that a noisy bearing makes."""
@@ -558,9 +701,11 @@ class Mode:
     index: int
     mixing_probabilities: np.ndarray = None
     mixed: tuple = None
+    motion_jacobian: np.ndarray = None
     predicted: tuple = None
     predicted_measurement: np.ndarray = None
     innovation: np.ndarray = None
+    measurement_jacobian: np.ndarray = None
     innovation_covariance: np.ndarray = None
     cross_covariance: np.ndarray = None
     gain: np.ndarray = None
@@ -586,34 +731,36 @@ class Imm:
 
     def __init__(
         self,
-        transition_matrices,
-        process_noises,
-        measurement,
-        measurement_noise,
-        chain,
         mode_probabilities,
         means,
         covariances,
-        conversion=None,
         rule=None,
         square_root=np.linalg.cholesky,
-        mixes_first=True,
+        first_step="mixed",
         has_two_pi=True,
+        linearises=False,
         number=np.float64,
     ):
-        self.transition_matrices = transition_matrices  # F, one a mode
+        self.mode_probabilities = mode_probabilities
+        self.estimates = list(zip(means, covariances))
+        self.rule = rule  # points, weights, covariance weights; None for filters without points
+        self.square_root = square_root
+        self.mixes = first_step == "mixed"
+        self.predicts = first_step != "predicted"
+        self.has_two_pi = has_two_pi
+        self.linearises = linearises  # whether F and H are Jacobians, which are shown
+        self.number = number
+
+    def given(
+        self, motions, process_noises, measurement, measurement_noise, conversion, chain
+    ):
+        """The models of the next step."""
+        self.motions = motions  # one a mode
         self.process_noises = process_noises  # Q, one a mode
         self.measurement = measurement
         self.measurement_noise = measurement_noise  # R
-        self.chain = chain  # chain[i, j] = P(mode j now | mode i before)
-        self.mode_probabilities = mode_probabilities
-        self.estimates = list(zip(means, covariances))
         self.conversion = conversion  # of ranges and bearings to positions; None: as measured
-        self.rule = rule  # points, weights, covariance weights; None for the Kalman filter
-        self.square_root = square_root
-        self.mixes = mixes_first
-        self.has_two_pi = has_two_pi
-        self.number = number
+        self.chain = chain  # chain[i, j] = P(mode j now | mode i before)
 
     def step(self, z):
         """One step with a measurement, or without a detection when z is None."""
@@ -647,7 +794,7 @@ class Imm:
         now.combined = self.combined(now)
         self.estimates = [mode.updated for mode in now.modes]
         self.mode_probabilities = now.mode_probabilities
-        self.mixes = True
+        self.mixes = self.predicts = True
         return now
 
     def predicted_mode_probabilities(self):
@@ -665,13 +812,19 @@ class Imm:
         return mixture(mode.mixing_probabilities, self.estimates)
 
     def predicted(self, mode):
-        """F x and F P F' + Q, or the same by points."""
+        """f(x) and F P F' + Q, or the same by points."""
         mean, covariance = mode.mixed
-        transition, noise = self.transition_matrices[mode.index], self.process_noises[mode.index]
+        motion, noise = self.motions[mode.index], self.process_noises[mode.index]
         if self.rule is None:
-            return transition @ mean, transition @ covariance @ transition.T + noise
+            slope = motion.slope(mean)
+            mode.motion_jacobian = slope if self.linearises else None
+            if not self.predicts:
+                return mode.mixed
+            return motion.of(mean), slope @ covariance @ slope.T + noise
+        if not self.predicts:
+            return mode.mixed
         _, weights, covariance_weights = self.rule
-        points = self.points(mode.mixed) @ transition.T
+        points = np.stack([motion.of(point) for point in self.points(mode.mixed)])
         predicted = weights @ points
         deviations = points - predicted
         return predicted, (deviations.T * covariance_weights) @ deviations + noise
@@ -702,8 +855,9 @@ class Imm:
         mean, covariance = mode.predicted
         noise = self.measurement_noise
         if self.rule is None:
-            matrix = self.measurement.matrix
-            mode.predicted_measurement = matrix @ mean
+            matrix = self.measurement.slope(mean)
+            mode.measurement_jacobian = matrix if self.linearises else None
+            mode.predicted_measurement = self.measurement.of_states(mean[None, :])[0]
             mode.cross_covariance = covariance @ matrix.T
             mode.innovation_covariance = matrix @ mode.cross_covariance + noise
             return
@@ -787,7 +941,8 @@ class Joseph(Imm):
         mean, covariance = mode.predicted
         gain, cross = mode.gain, mode.cross_covariance
         if self.rule is None:
-            rest = np.eye(len(mean), dtype=self.number) - gain @ self.measurement.matrix
+            matrix = self.measurement.slope(mean)
+            rest = np.eye(len(mean), dtype=self.number) - gain @ matrix
             covariance = rest @ covariance @ rest.T + gain @ self.measurement_noise @ gain.T
         else:
             covariance = (
@@ -819,7 +974,7 @@ class Information(Imm):
     def updated(self, mode):
         mean, covariance = mode.predicted
         inverse = np.linalg.inv(covariance)
-        matrix, noise = self.measurement.matrix, self.measurement_noise
+        matrix, noise = self.measurement.slope(mean), self.measurement_noise
         if self.rule is not None:
             matrix = mode.cross_covariance.T @ inverse
             noise = mode.innovation_covariance - matrix @ mode.cross_covariance

@@ -12,9 +12,9 @@ import numpy as np
 class TransitionTransposed:
     """The chain is stored by columns: chain[j, i]."""
 
-    def __init__(self, **arguments):
+    def given(self, **arguments):
         arguments["chain"] = arguments["chain"].T
-        super().__init__(**arguments)
+        super().given(**arguments)
 
 
 class TransitionTransposedInMixing:
@@ -53,11 +53,11 @@ class CovariancesNotMixed:
 class ProcessNoiseOmitted:
     """Q is never added."""
 
-    def __init__(self, **arguments):
+    def given(self, **arguments):
         arguments["process_noises"] = [
             np.zeros_like(noise) for noise in arguments["process_noises"]
         ]
-        super().__init__(**arguments)
+        super().given(**arguments)
 
 
 class ProcessNoiseDoubled:
@@ -72,7 +72,8 @@ class PointsNotDrawnAfresh:
     """The propagated points are measured."""
 
     def measured_points(self, mode):
-        return self.points(mode.mixed) @ self.transition_matrices[mode.index].T
+        motion = self.motions[mode.index]
+        return np.stack([motion.of(point) for point in self.points(mode.mixed)])
 
 
 class PointsFromRowsOfTheRoot:
@@ -153,6 +154,7 @@ class MeasuredMean:
         self.matrix = measurement.matrix
         self.of_states = measurement.of_states
         self.difference = measurement.difference
+        self.slope = measurement.slope
 
     def mean(self, weights, values, centre):
         return centre
@@ -164,7 +166,7 @@ class GainOfMixedCovariance:
     def gain(self, mode):
         if self.rule is not None:
             return super().gain(mode)
-        matrix, covariance = self.measurement.matrix, mode.mixed[1]
+        matrix, covariance = self.measurement.slope(mode.predicted[0]), mode.mixed[1]
         s = matrix @ covariance @ matrix.T + self.measurement_noise
         return covariance @ matrix.T @ np.linalg.inv(s)
 

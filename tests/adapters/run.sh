@@ -95,7 +95,7 @@ python_filters() {
         expect 0 "RIGHT: numpy example, double precision" -- -- "${numpy[@]}" --form "$form"
     done
     expect 0 "RIGHT, but otherwise" "another form" -- -- "${numpy[@]}" --form information
-    for convention in angle_mean=vector square_root=cholesky-upper first_step=unmixed log_likelihood=without-two-pi; do
+    for convention in angle_mean=vector square_root=cholesky-upper first_step=unmixed first_step=predicted log_likelihood=without-two-pi; do
         expect 0 "RIGHT: numpy example, double precision" -- -- "${numpy[@]}" --convention "$convention"
     done
     for level in posteriors combined; do
@@ -171,10 +171,14 @@ filterpy() {
     local combined="(prediction-combined-with-old-probabilities; mistake)" stale="(points-not-drawn-afresh; mistake)"
 
     # What is right is right; the prediction is combined with the probabilities of the step before.
-    expect 0 "RIGHT: FilterPy" -- --case likelihood.e --case likelihood.g --case update --case steps.one -- "$@" kalman
+    expect 0 "RIGHT on what was judged: FilterPy" -- --case likelihood.e --case likelihood.g --case update --case steps.one -- "$@" kalman
     expect 1 "FAULT combined_prediction.mean" "MOST LIKELY" "$combined" -- --case mixing --case step --case far --case units -- "$@" kalman
-    expect 0 "RIGHT: FilterPy" -- --case update --case rule -- "$@" unscented
-    expect 1 "FAULT combined_prediction.mean" "MOST LIKELY" "$combined" -- -- "$@" unscented
+    expect 0 "RIGHT on what was judged: FilterPy" -- --case update --case rule -- "$@" unscented
+    # Three things in different cases, each named; and a density that drops dimensions, which has no name.
+    expect 1 "MOST LIKELY, IN DIFFERENT CASES" "explains 7 of the 9 cases" "$combined" "(last-likelihood-used-again; mistake)" \
+        "(vanishing-likelihoods-ignored; mistake)" -- -- "$@" unscented
+    expect 1 "explains 26 of the 32 cases" "$combined" "(last-covariance-used-again; mistake)" "Unexplained: singular.innovation" \
+        -- -- "$@" kalman
     # Without a detection the probabilities are updated all the same; likelihoods underflow; a mode that cannot be reached is NaN.
     expect 1 "FAULT mode_probabilities" -- --case missed.one -- "$@" kalman
     expect 1 "FAULT mode_probabilities" "MOST LIKELY, TWO AT ONCE" "$combined" -- --case outlier -- "$@" kalman
@@ -198,8 +202,8 @@ octave_filter() {
     immaculate cases copy "$work/problems" >/dev/null
     octave-cli --no-init-file --eval "addpath('$adapters'); octave_imm('$work/problems', '$work/answers')" >"$work/octave" 2>&1 ||
         cat "$work/octave"
-    expect 0 "RIGHT: Octave example, double precision" -- --answers "$work/answers"
-    expect 0 "11 right of 11 cases" "3524 of 3524 values" -- --kind converted --answers "$work/answers"
+    expect 0 "RIGHT on what was judged: Octave example, double precision" -- --answers "$work/answers"
+    expect 0 "14 right of 14 cases" "3947 of 3947 values" -- --kind converted --answers "$work/answers"
 }
 
 cpp_filter() {
@@ -208,8 +212,8 @@ cpp_filter() {
         return
     fi
     g++ -std=c++17 -O2 -Wall -Wextra -Werror -I /usr/include/eigen3 -o "$work/imm" "$adapters/cpp/main.cpp"
-    expect 0 "RIGHT: C++ example, double precision" -- -- "$work/imm"
-    expect 0 "11 right of 11 cases" "3524 of 3524 values" -- --kind converted -- "$work/imm"
+    expect 0 "RIGHT on what was judged: C++ example, double precision" -- -- "$work/imm"
+    expect 0 "14 right of 14 cases" "3947 of 3947 values" -- --kind converted -- "$work/imm"
 }
 
 python_filters
