@@ -347,7 +347,9 @@ impl<'a> Search<'a> {
         let left_by = |variant: &&'static Variant| {
             let with = [chosen, &[*variant]].concat();
             let is_left = |(evidence, setup): &Piece| {
-                Ok(!self.explains_one(&with, evidence, setup)? && !self.explains_one(&[variant], evidence, setup)?)
+                let is_explained = self.explains_one(&[variant], evidence, setup)?
+                    || (!chosen.is_empty() && self.explains_one(&with, evidence, setup)?);
+                Ok(!is_explained)
             };
             let left: Result<Vec<bool>, Invalid> = open.iter().map(|piece| is_left(piece)).collect();
             Ok((*variant, left?))
