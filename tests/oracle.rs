@@ -9,7 +9,6 @@ use immaculate::imm::Quantity;
 use immaculate::oracle::case::{self, Case, Expected};
 use immaculate::oracle::check::{CaseReport, Outcome, Report, Selection, check};
 use immaculate::oracle::diagnose::Diagnosis;
-use immaculate::oracle::judge::Finding;
 use immaculate::oracle::problem::{FilterFile, ProblemFile};
 use immaculate::oracle::subject::{Answer, Broken, Level, Planted, Ready, Subject};
 use immaculate::oracle::variant::{self, Kind, Variant, catalogue};
@@ -87,7 +86,7 @@ fn caught_in_its_equation(report: &Report, quantity: Quantity) -> Vec<&str> {
     let cases = report.cases.iter().filter(|case| {
         let values = case.judgement.iter().flat_map(|judgement| &judgement.values);
         let first = values
-            .filter(|value| matches!(value.finding, Finding::Fault | Finding::NotFinite))
+            .filter(|value| value.finding.is_fault())
             .min_by_key(|value| value.place);
         first.is_some_and(|first| first.place.1 == quantity)
     });

@@ -243,8 +243,10 @@ fn case(id: &str, outcome: Outcome) -> CaseReport {
     CaseReport {
         id: id.into(),
         filters: vec![FilterFile::Kalman {}; 2],
-        behaviours: vec![Behaviour::OrdinaryData],
-        is_rejection: matches!(outcome, Outcome::Rejected { .. } | Outcome::NotRejected),
+        behaviours: match outcome {
+            Outcome::Rejected { .. } | Outcome::NotRejected => Vec::new(),
+            _ => vec![Behaviour::OrdinaryData],
+        },
         dimensions: Dimensions::new(4, 2, 2, 2),
         outcome,
         judgement: None,

@@ -3,8 +3,7 @@
 //! After this file the reader knows why a program that is right on all that it was asked need not be right: what it was never asked is
 //! said, filter by filter.
 
-use super::problem::FAMILIES;
-use super::problem::ProblemFile;
+use super::problem::{FAMILIES, ProblemFile};
 use super::verdict::{CaseReport, Outcome, Report, families};
 
 /// Something that a filter may meet.
@@ -89,7 +88,7 @@ impl Behaviour {
         }
     }
 
-    /// Those of a published case: what its flags say; without any it has ordinary data.
+    /// Those of a published case: what its flags say; without any it has ordinary data. A problem that must be rejected is not met at all.
     ///
     /// Example: two of the published cases.
     ///
@@ -101,10 +100,11 @@ impl Behaviour {
     /// assert_eq!(of("wrap.clockwise"), [Behaviour::Wrap]);
     /// ```
     pub fn of(problem: &ProblemFile) -> Vec<Self> {
-        let is_flagged = |behaviour: &Self| {
-            let mut flags = behaviour.flags().iter();
-            flags.any(|flag| problem.flags.iter().any(|own| own == flag))
-        };
+        let has = |flag: &str| problem.flags.iter().any(|own| own == flag);
+        if has("rejected") {
+            return Vec::new();
+        }
+        let is_flagged = |behaviour: &Self| behaviour.flags().iter().any(|flag| has(flag));
         let found: Vec<Self> = Self::ALL.into_iter().filter(is_flagged).collect();
         if found.is_empty() {
             return vec![Self::OrdinaryData];
@@ -192,7 +192,7 @@ impl Report {
     pub fn grades(&self) -> Vec<(&'static str, Vec<(Behaviour, Grade)>)> {
         let has = |family: &str| {
             let mut published = self.cases.iter().filter(|case| case.certified.is_none());
-            published.any(|case| case.families().contains(&family) && !case.is_rejection)
+            published.any(|case| case.families().contains(&family) && !case.behaviours.is_empty())
         };
         let of_family = |family: &'static str| {
             let grade = |behaviour: Behaviour| (behaviour, self.grade(family, behaviour));
@@ -215,9 +215,7 @@ impl Report {
     }
 
     fn grade(&self, family: &str, behaviour: Behaviour) -> Grade {
-        let is_of = |case: &&CaseReport| {
-            case.families().contains(&family) && case.behaviours.contains(&behaviour) && !case.is_rejection
-        };
+        let is_of = |case: &&CaseReport| case.families().contains(&family) && case.behaviours.contains(&behaviour);
         let cases: Vec<&CaseReport> = self.cases.iter().filter(is_of).collect();
         let count = |is: &dyn Fn(&Outcome) -> bool| cases.iter().filter(|case| is(&case.outcome)).count();
         let wrong = count(&Outcome::is_wrong);

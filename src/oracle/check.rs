@@ -467,12 +467,7 @@ fn stops_where_noise_drowns(shown: &Trace, reference: &Reference) -> bool {
 /// Outcome, counts and digits from the judged values.
 fn summarise(report: &mut CaseReport, judgement: &Judgement, error: Option<String>, is_drowned: bool) {
     let findings = || judgement.values.iter().map(|value| value.finding);
-    let decided = |finding: &Finding| {
-        matches!(
-            finding,
-            Finding::Right | Finding::Propagated | Finding::Fault | Finding::NotFinite
-        )
-    };
+    let decided = |finding: &Finding| matches!(finding, Finding::Right | Finding::Propagated) || finding.is_fault();
     report.judged = findings().filter(decided).count();
     report.digits = judgement
         .values
@@ -481,7 +476,7 @@ fn summarise(report: &mut CaseReport, judgement: &Judgement, error: Option<Strin
         .map(|value| -libm::log10(value.error.max(f64::EPSILON / 2.0)))
         .reduce(f64::min);
     report.stopped.clone_from(&error);
-    report.outcome = if findings().any(|finding| matches!(finding, Finding::Fault | Finding::NotFinite)) {
+    report.outcome = if findings().any(Finding::is_fault) {
         Outcome::Wrong
     } else if let Some(reason) = error.filter(|_| !is_drowned) {
         Outcome::Stopped { reason }

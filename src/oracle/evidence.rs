@@ -29,10 +29,7 @@ impl Beginning {
         shown: &Trace,
         reference: &Reference,
     ) -> Option<Self> {
-        let values = report.judgement.iter().flat_map(|judgement| &judgement.values);
-        let is_fault = |value: &&Judged| matches!(value.finding, Finding::Fault | Finding::NotFinite);
-        let first = values.filter(is_fault).map(|value| value.place.0).min()?;
-        let steps = first + Self::STEPS_AFTER;
+        let steps = report.first_fault()? + Self::STEPS_AFTER;
         if 2 * steps > problem.measurements.len() {
             return None;
         }
@@ -62,8 +59,6 @@ pub(super) fn evidence_of<'a>(
         Finding::Right => value.own.is_none_or(|own| own.ratio > LIMIT),
         _ => value.own.is_none(),
     };
-    let is_fault = |value: &&Judged| matches!(value.finding, Finding::Fault | Finding::NotFinite);
-    let first = values.clone().filter(is_fault).map(|value| value.place.0).min();
     let passed: BTreeSet<_> = values.filter(says_nothing).map(|value| value.place).collect();
     Evidence {
         case: judge::Case {
@@ -74,7 +69,7 @@ pub(super) fn evidence_of<'a>(
         },
         passed,
         is_faulty: report.outcome == Outcome::Wrong,
-        steps_to_fault: first.unwrap_or(usize::MAX),
+        steps_to_fault: report.first_fault().unwrap_or(usize::MAX),
         is_beginning: false,
     }
 }

@@ -52,6 +52,13 @@ pub enum Finding {
     Fault,
 }
 
+impl Finding {
+    /// Whether it is an error of the value's own equation.
+    pub fn is_fault(self) -> bool {
+        matches!(self, Self::Fault | Self::NotFinite)
+    }
+}
+
 /// A shown value, judged.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Judged {
@@ -89,6 +96,13 @@ pub struct Judgement {
     pub values: Vec<Judged>,
     /// Steps that could not be evaluated on the program's own values, a sentence each: a covariance that is not positive definite, say.
     pub failures: Vec<String>,
+}
+
+impl Judgement {
+    /// The faults, in the order in which they are computed.
+    pub fn faults(&self) -> impl Iterator<Item = &Judged> {
+        self.values.iter().filter(|value| value.finding.is_fault())
+    }
 }
 
 /// The error of numbers against expected ones: the greatest in rounding noise, and where.
@@ -215,7 +229,7 @@ impl Case<'_> {
             } else {
                 Finding::Fault
             };
-            if matches!(finding, Finding::Fault | Finding::NotFinite) {
+            if finding.is_fault() {
                 suspects.extend(hidden.iter().copied());
             }
             let mut names: Vec<Quantity> = hidden.iter().map(|place| place.1).collect();

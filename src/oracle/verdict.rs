@@ -4,7 +4,7 @@
 
 use super::behaviour::{Behaviour, NotAsked};
 use super::diagnose::Diagnosis;
-use super::judge::{Finding, Judged, Judgement};
+use super::judge::{Judged, Judgement};
 use super::problem::{FilterFile, ProblemFile};
 use super::subject::{Broken, Ready};
 use super::trace::Dimensions;
@@ -69,10 +69,8 @@ pub struct CaseReport {
     pub id: String,
     /// The filter of each mode.
     pub filters: Vec<FilterFile>,
-    /// What it has, if it is published.
+    /// What its filters meet in it, [`Behaviour::of`].
     pub behaviours: Vec<Behaviour>,
-    /// Whether it must be rejected.
-    pub is_rejection: bool,
     /// Its dimensions.
     pub dimensions: Dimensions,
     /// How it went.
@@ -100,7 +98,6 @@ impl CaseReport {
                 .map(|mode| problem.filter_of(mode).clone())
                 .collect(),
             behaviours: Behaviour::of(problem),
-            is_rejection: problem.flags.iter().any(|flag| flag == "rejected"),
             dimensions: problem.dimensions(),
             outcome: Outcome::NothingShown,
             judgement: None,
@@ -110,6 +107,12 @@ impl CaseReport {
             stopped: None,
             certified: None,
         }
+    }
+
+    /// The step of the first fault.
+    pub(super) fn first_fault(&self) -> Option<usize> {
+        let faults = self.judgement.iter().flat_map(Judgement::faults);
+        faults.map(|value| value.place.0).min()
     }
 
     /// The families of its filters.
@@ -181,10 +184,8 @@ impl Report {
     /// The faults, each with its case.
     pub fn faults(&self) -> impl Iterator<Item = (&CaseReport, &Judged)> {
         self.cases.iter().flat_map(|case| {
-            let values = case.judgement.iter().flat_map(|judgement| &judgement.values);
-            values
-                .filter(|value| matches!(value.finding, Finding::Fault | Finding::NotFinite))
-                .map(move |value| (case, value))
+            let faults = case.judgement.iter().flat_map(Judgement::faults);
+            faults.map(move |value| (case, value))
         })
     }
 }
