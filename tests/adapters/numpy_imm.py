@@ -474,8 +474,14 @@ def atan2(y, x):
 
 
 def stumpff(k, t):
-    """c_k(t), the sum over j of (-t)^j / (2j + k)!."""
-    return sum((-t) ** j / math.factorial(2 * j + k) for j in range(25))
+    """c_k(t), the sum over j of (-t)^j / (2j + k)!; far from zero, where it cancels, otherwise."""
+    if abs(t) <= 9:
+        return sum((-t) ** j / math.factorial(2 * j + k) for j in range(25))
+    if k > 1:
+        return (1 / math.factorial(k - 2) - stumpff(k - 2, t)) / t
+    root = np.sqrt(t + 0j)
+    value = np.cos(root) if k == 0 else np.sin(root) / root
+    return value if np.iscomplexobj(t) else value.real
 
 
 FUNCTIONS = {"__builtins__": {}, "pi": math.pi, "atan2": atan2, "ln": np.log}
