@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Checks every program of this folder and holds the verdicts to what they must be.
 #
-# Needs a Rust toolchain, Python with venv, and a network for PyPI. Octave, a C++ compiler and its two libraries are installed with apt
+# Needs a Rust toolchain, Python with venv, and a network for PyPI. Octave, a C++ compiler, CMake and the libraries are installed with apt
 # where that is possible; what is missing is left out with a line that says so. IMMACULATE may name a program that is built already.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
@@ -25,10 +25,13 @@ immaculate() {
 # Measurements that are converted, modes of unequal dimensions, and what must be refused there.
 converted=(--case converted --case sustika2015 --case unscented.unequal --case rejected.range --case rejected.unknown.conversion)
 
+# Problems of format 2.
+format_2=(--case missing --case sensors --case changing --case steps.changing --case input --case heading --case extended)
+
 # expect STATUS LINE… -- ARGUMENTS OF check…: the exit status, and parts of the report, each of which must be there. What is refused is
 # refused in its class.
 expect() {
-    local status=$1 found=0 wanted=()
+    local status=$1 wanted=()
     shift
     while [ "$1" != "--" ]; do
         wanted+=("$1")
@@ -36,10 +39,22 @@ expect() {
     done
     shift
     local title="$*"
-    title=${title//"$work/"/}
     title=${title//"${short[*]}"/(short cases)}
     title=${title//"${converted[*]}"/(converted measurements and unequal dimensions)}
-    immaculate check "$@" >"$work/report" 2>&1 || found=$?
+    title=${title//"${format_2[*]}"/(problems of format 2)}
+    judged "check $title" "$status" "${wanted[@]}" -- immaculate check "$@"
+}
+
+# judged TITLE STATUS LINE… -- COMMAND…: the same of any command.
+judged() {
+    local title=${1//"$work/"/} status=$2 found=0 wanted=()
+    shift 2
+    while [ "$1" != "--" ]; do
+        wanted+=("$1")
+        shift
+    done
+    shift
+    "$@" >"$work/report" 2>&1 || found=$?
     tr -s ' \n' ' ' <"$work/report" >"$work/words" # sentences are broken into lines
     local complaint=""
     [ "$found" -eq "$status" ] || complaint="exit status $found where $status is expected"
@@ -48,9 +63,9 @@ expect() {
     done
     ! grep -qF "for another reason" "$work/words" || complaint="$complaint${complaint:+; }refused in another class"
     if [ -z "$complaint" ]; then
-        echo "as expected  check $title"
+        echo "as expected  $title"
     else
-        echo "NOT AS EXPECTED  check $title: $complaint"
+        echo "NOT AS EXPECTED  $title: $complaint"
         cat "$work/report"
         failures=$((failures + 1))
     fi
@@ -101,6 +116,8 @@ python_filters() {
     for level in posteriors combined; do
         expect 0 "RIGHT: numpy example, double precision" "Never shown:" -- -- "${numpy[@]}" --show "$level"
     done
+
+    expect 0 "RIGHT: numpy example, double precision" "130 of 130 values" -- --problem "$adapters/formulas.json" -- "${numpy[@]}"
 
     # A mistake, and the equation in which it is made.
     while read -r mistake quantity; do
@@ -199,7 +216,6 @@ octave_filter() {
         left_out "Octave: not installed"
         return
     fi
-    immaculate cases copy "$work/problems" >/dev/null
     octave-cli --no-init-file --eval "addpath('$adapters'); octave_imm('$work/problems', '$work/answers')" >"$work/octave" 2>&1 ||
         cat "$work/octave"
     expect 0 "RIGHT on what was judged: Octave example, double precision" -- --answers "$work/answers"
@@ -207,15 +223,40 @@ octave_filter() {
 }
 
 cpp_filter() {
-    if ! install g++ g++ || ! install /usr/include/nlohmann/json.hpp nlohmann-json3-dev || ! install /usr/include/eigen3 libeigen3-dev; then
-        left_out "C++: no compiler, or not its libraries"
+    if ! install g++ g++ || ! install cmake cmake || ! install /usr/include/nlohmann/json.hpp nlohmann-json3-dev ||
+        ! install /usr/include/eigen3 libeigen3-dev; then
+        left_out "C++: no compiler, no CMake, or not its libraries"
         return
     fi
-    g++ -std=c++17 -O2 -Wall -Wextra -Werror -I /usr/include/eigen3 -o "$work/imm" "$adapters/cpp/main.cpp"
-    expect 0 "RIGHT on what was judged: C++ example, double precision" -- -- "$work/imm"
-    expect 0 "14 right of 14 cases" "3947 of 3947 values" -- --kind converted -- "$work/imm"
+    install /usr/include/gtest/gtest.h libgtest-dev || left_out "unit tests in C++: no GoogleTest"
+    # The header is installed and found for the unit tests, and fetched for the program; all are built at the same time.
+    local header="$work/header" found="$work/found" fetched="$work/fetched" quiet=(-DCMAKE_CXX_FLAGS=-Werror --log-level=ERROR)
+    cmake -S "$adapters/cpp" -B "$header" "${quiet[@]}" -DCMAKE_INSTALL_PREFIX="$work/prefix" >/dev/null
+    cmake --install "$header" >/dev/null
+    cmake -S "$adapters/cpp/example" -B "$found" "${quiet[@]}" -DCMAKE_PREFIX_PATH="$work/prefix" \
+        -DCMAKE_REQUIRE_FIND_PACKAGE_immaculate=ON >/dev/null
+    cmake -S "$adapters/cpp/example" -B "$fetched" "${quiet[@]}" -DCMAKE_DISABLE_FIND_PACKAGE_immaculate=ON >/dev/null
+    cmake --build "$fetched" --target imm >"$work/program.log" 2>&1 &
+    local program=$!
+    if [ -e /usr/include/gtest/gtest.h ]; then
+        cmake --build "$header" >"$work/tests.log" 2>&1 && cmake --build "$found" --target imm-test >>"$work/tests.log" 2>&1 ||
+            cat "$work/tests.log"
+        judged "tests of immaculate.hpp" 0 "[ PASSED ]" -- "$header/header-test"
+        export IMMACULATE_CASES="$work/problems"
+        judged "tests in C++" 0 "[ PASSED ]" "[ SKIPPED ] 1 test" "there is one filter for all modes here" -- "$found/imm-test"
+    fi
+    wait "$program" || cat "$work/program.log"
+    local imm="$fetched/imm"
+    expect 0 "RIGHT on what was judged: C++ example, double precision" -- -- "$imm"
+    expect 0 "17 right of 17 cases" "4479 of 4479 values" -- --kind converted -- "$imm"
+    expect 0 "28 right of 28 cases" -- "${format_2[@]}" -- "$imm"
+    expect 0 "RIGHT: C++ example, double precision" "130 of 130 values" -- --problem "$adapters/formulas.json" -- "$imm"
+    for convention in unmixed predicted; do
+        expect 0 "RIGHT on what was judged: C++ example" -- --case step --case missed -- "$imm" "first_step=$convention"
+    done
 }
 
+immaculate cases copy "$work/problems" >/dev/null
 python_filters
 octave_filter
 cpp_filter
