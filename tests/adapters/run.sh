@@ -211,15 +211,43 @@ filterpy() {
         -- --case step.n --case chain.not -- "$@" kalman --transition-as-documented
 }
 
+octave() {
+    octave-cli --no-init-file --eval "addpath('$adapters/octave'); $*"
+}
+
 octave_filter() {
     if ! install octave-cli octave; then
         left_out "Octave: not installed"
         return
     fi
-    octave-cli --no-init-file --eval "addpath('$adapters'); octave_imm('$work/problems', '$work/answers')" >"$work/octave" 2>&1 ||
-        cat "$work/octave"
+    octave "immaculate.run_folder('$work/problems', '$work/answers', example_filter())" >"$work/octave" 2>&1 || cat "$work/octave"
     expect 0 "RIGHT on what was judged: Octave example, double precision" -- --answers "$work/answers"
-    expect 0 "14 right of 14 cases" "3947 of 3947 values" -- --kind converted --answers "$work/answers"
+    expect 0 "16 right, 1 skipped of 17 cases" "4338 of 4479 values" -- --kind converted --answers "$work/answers"
+    expect 0 "22 right, 6 skipped of 28 cases" "there are no formulas and no named models here" -- "${format_2[@]}" \
+        --answers "$work/answers"
+
+    # The same in a test of its own, the long table, another convention, a mistake and an error, on few cases.
+    mkdir "$work/few"
+    cp "$work"/problems/{mixing.two-modes,missing.kalman,sensors.extended,heading.extended}.*.json "$work/few"
+    octave "immaculate.run_folder('$work/few', '$work/tables', example_filter('first_step', 'unmixed'), 'csv')" >"$work/octave" 2>&1 ||
+        cat "$work/octave"
+    expect 0 "3 right, 1 skipped of 4 cases" -- --case mixing.two --case missing.kalman --case sensors.ext --case heading.ext \
+        --answers "$work/tables"
+    test_octave 0 "3 Passed, 0 Failed, 1 Incomplete" -- "example_filter()"
+    test_octave 0 "3 Passed, 0 Failed, 1 Incomplete" -- "mistaken_filter('another-turn')"
+    test_octave 1 "0 Passed, 3 Failed, 1 Incomplete" "Verification failed in mixing.two-modes." \
+        "predicted_mode_probabilities, step 1, (1,1): " "mixed.mean, step 1, mode 1 (constant velocity), (1,1): " \
+        -- "mistaken_filter('transition-transposed')"
+    test_octave 1 "combined.mean, step 1, (1,1): NaN is shown" -- "mistaken_filter('not-finite')"
+    test_octave 1 "combined.covariance, step 1: it has the size [4 1], not [4 4]" -- "mistaken_filter('wrong-size')"
+    test_octave 1 "no value is shown" -- "mistaken_filter('hidden')"
+    test_octave 1 "it stopped: step 1: singular matrix" -- "mistaken_filter('stops')"
+}
+
+# The few cases as tests; the last argument is the filter.
+test_octave() {
+    local arguments=("${@:1:$#-1}") filter=${!#}
+    judged "tests in Octave of $filter" "${arguments[@]}" octave "immaculate.test_folder('$work/few', $filter)"
 }
 
 cpp_filter() {

@@ -1,0 +1,52 @@
+% problem = immaculate.read_problem(file): a problem as MATLAB and Octave have it, whatever jsondecode makes of the file.
+%
+% Lists of objects are cells: problem.modes{j}, problem.initial.modes{j}, problem.measurements{k}, problem.sensors{s}. Matrices are
+% matrices, lists of numbers are columns. problem.state has the names, problem.is_angle says which are angles. A measurement
+% has is_angle, one an entry of z. Nothing else is renamed; what `problem.measurement.position` points at counts from 0.
+% What holds in a step, and which entries of z are there, says immaculate.step_of.
+function problem = read_problem(file)
+  problem = jsondecode(fileread(file));
+  problem.modes = cells(problem.modes);
+  problem.initial.modes = cells(problem.initial.modes);
+  problem.measurements = cells(problem.measurements);
+  if ~isfield(problem, 'sensors')
+    problem.sensors = {};
+  end
+  problem.sensors = cells(problem.sensors);
+  if ~isfield(problem, 'conventions')
+    problem.conventions = struct();
+  end
+  [problem.state, problem.is_angle] = components(problem.state);
+  problem.measurement = with_angles(problem.measurement);
+  for s = 1:numel(problem.sensors)
+    problem.sensors{s}.measurement = with_angles(problem.sensors{s}.measurement);
+  end
+end
+
+function list = cells(list)
+  if isstruct(list)
+    list = num2cell(list);
+  end
+end
+
+% An entry of the state or of z is a name, [name, unit] or [name, unit, 'angle'].
+function [names, is_angle] = components(list)
+  names = cell(1, numel(list));
+  is_angle = false(1, numel(list));
+  for i = 1:numel(list)
+    entry = cellstr(list{i});
+    names{i} = entry{1};
+    is_angle(i) = numel(entry) > 2 && strcmp(entry{3}, 'angle');
+  end
+end
+
+function measurement = with_angles(measurement)
+  switch measurement.kind
+    case 'range-bearing'
+      measurement.is_angle = strcmp(measurement.components(:)', 'bearing');
+    case 'formulas'
+      [~, measurement.is_angle] = components(measurement.z);
+    otherwise
+      measurement.is_angle = [];                       % nothing is one, or the model knows
+  end
+end
