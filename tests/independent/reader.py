@@ -1,0 +1,136 @@
+"""A problem of spec/formats.md as what a filter needs at each step.
+
+Every number is the double nearest to its decimal, and exact from there on. A problem is read anew for every precision. What is wrong with a
+problem that must be rejected is said in `validity.py`.
+"""
+
+from flint import arb_mat
+
+from balls import column, exact, matrix
+from conversion import convert, entries_of
+from filters import Estimate, Seen
+from formulas import Affine, Curved, Scope, atan2, evaluate, hypot, rows_of
+from models import motion
+
+MATRIX_FILTERS = ("kalman", "converted", "fixed-gain")
+
+
+class Problem:
+    """One problem at the present precision. Modes count from 0; `at` is an entry of `measurements`."""
+
+    def __init__(self, raw):
+        self.raw = raw
+        entries = [entry if isinstance(entry, list) else [entry] for entry in raw["state"]]
+        self.state = [entry[0] for entry in entries]
+        self.angles = [is_angle(entry) for entry in entries]
+        self.filters = [{**mode.get("filter", raw["filter"])} for mode in raw["modes"]]
+        for j, given in enumerate(raw["filter"].get("modes", [])):
+            self.filters[j] |= {key: matrix(given[key]) for key in ("gain", "innovation_covariance")}
+        initial = raw["initial"]
+        self.probabilities = [exact(p) for p in initial["mode_probabilities"]]
+        self.estimates = [estimate(mode) for mode in initial["modes"]]
+        self.steps = raw["measurements"]
+
+    def chain(self, at):
+        """p_ij, row i: from mode i at k−1 to mode j at k."""
+        return [[exact(p) for p in row] for row in at.get("transition", self.raw["transition"])]
+
+    def scope(self, j, at):
+        """What names stand for in mode j."""
+        mode, raw = self.raw["modes"][j], self.raw
+        numbers = {**raw.get("parameters", {}), **mode.get("parameters", {})}
+        if "T" in at:
+            numbers["T"] = at["T"]
+        return Scope({name: exact(x) for name, x in numbers.items()}, raw.get("let", []) + mode.get("let", []))
+
+    def motion(self, j, at):
+        """x(k) = f(x(k−1)) of mode j."""
+        mode = self.raw["modes"][j]
+        if "F" in at:
+            return Affine(matrix(at["F"][j]))
+        if "F" in mode:
+            return Affine(matrix(mode["F"]))
+        if "f" in mode:
+            function = self.of_formulas(mode["f"], self.scope(j, at))
+        else:
+            asked = mode["motion"]
+            given = self.scope(j, at)
+            given.known |= {name: exact(x) for name, x in asked.get("parameters", {}).items()}
+            function = Curved(motion(asked["model"], self.state, given, asked.get("others")))
+        return function.as_affine(len(self.state)) if self.filters[j]["kind"] in MATRIX_FILTERS else function
+
+    def of_formulas(self, texts, scope):
+        """A formula for each entry, of the entries of the state."""
+
+        def function(numbers):
+            names = Scope({**scope.known, **dict(zip(self.state, numbers))}, scope.definitions)
+            return [evaluate(text, names) for text in texts]
+
+        return Curved(function)
+
+    def noise(self, j, at):
+        """Q of mode j: numbers, or formulas among which numbers may stand."""
+        rows = at["Q"][j] if "Q" in at else self.raw["modes"][j]["Q"]
+        scope = self.scope(j, at)
+        return arb_mat([[evaluate(x, scope) if isinstance(x, str) else exact(x) for x in row] for row in rows])
+
+    def sensor(self, at):
+        """The measurement and R that are meant at this step."""
+        named = {sensor["name"]: sensor for sensor in self.raw.get("sensors", [])}
+        sensor = named[at["sensor"]] if "sensor" in at else self.raw
+        return sensor["measurement"], at.get("R", sensor["R"])
+
+    def seen(self, at):
+        """What is seen at a step, or nothing; and the converted measurement where the filter converts."""
+        if at["z"] is None:
+            return None, {}
+        measurement, noise = self.sensor(at)
+        rows = [row for row, entry in enumerate(at["z"]) if entry is not None]
+        z = column([exact(at["z"][row]) for row in rows])
+        noise = matrix([[noise[i][j] for j in rows] for i in rows])
+        if self.raw["filter"]["kind"] == "converted" and measurement["kind"] == "range-bearing":
+            return self.converted(measurement, z, noise)
+        function, angles = self.measured(measurement, at)
+        return Seen(rows_of(function, rows), noise, z, [angles[row] for row in rows]), {}
+
+    def measured(self, measurement, at):
+        """h, and which of its entries are angles."""
+        if measurement["kind"] == "linear":
+            rows = at.get("H", measurement["H"])
+            return Affine(matrix(rows)), [False] * len(rows)
+        if measurement["kind"] == "range-bearing":
+            return of_sensor(measurement), [kind == "bearing" for kind in measurement["components"]]
+        if measurement["kind"] == "formulas":
+            scope = Scope({name: exact(x) for name, x in self.raw.get("parameters", {}).items()}, self.raw.get("let", []))
+            return self.of_formulas(measurement["h"], scope), [is_angle(entry) for entry in measurement["z"]]
+        raise NotImplementedError(f"measurements of kind {measurement['kind']}")
+
+    def converted(self, measurement, z, noise):
+        """The position that range and bearing show: sustika2015 (20)-(26) and its kin."""
+        polar = entries_of(measurement["components"], z, noise)
+        position, covariance = convert(self.raw["filter"]["conversion"], *polar)
+        position += matrix([[x] for x in measurement["sensor"]])
+        pick = arb_mat([[int(entry == place) for entry in range(len(self.state))] for place in measurement["position"]])
+        values = {"converted_measurement": position, "converted_covariance": covariance}
+        return Seen(Affine(pick), covariance, position, [False, False]), values
+
+
+def is_angle(entry):
+    return isinstance(entry, list) and entry[2:] == ["angle"]
+
+
+def estimate(mode):
+    covariance = matrix(mode["covariance"]) if "covariance" in mode else None
+    return Estimate(column([exact(x) for x in mode["mean"]]), covariance)
+
+
+def of_sensor(measurement):
+    """sustika2015 (3) and liu2017 (31) with atan2: range and bearing from where the sensor stands, in the order of `components`."""
+    x, y = measurement["position"]
+    place = [exact(number) for number in measurement["sensor"]]
+
+    def function(numbers):
+        east, north = numbers[x] - place[0], numbers[y] - place[1]
+        return [hypot(east, north) if kind == "range" else atan2(north, east) for kind in measurement["components"]]
+
+    return Curved(function)
