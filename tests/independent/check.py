@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Proves every certified number of `fixtures/` again, in ball arithmetic, with nothing of the crate.
+"""Proves every certified number of `fixtures/` again, in ball arithmetic, with nothing of the crate, and compares the named models.
 
-    python3 tests/independent/check.py                      all cases and all certificates
+    python3 tests/independent/check.py                      all cases, certificates and named models
     python3 tests/independent/check.py --case ID --case ID  these cases
     python3 tests/independent/check.py --self-test          whether it would notice a mistake
 
@@ -18,6 +18,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import certificates
+import rows
 import validity
 from balls import AS_POINT, PROVEN, WRONG, Undecided, set_bits
 from compare import Tally, compare_noise, compare_scale, compare_values
@@ -162,6 +163,7 @@ def main():
     failures = check_cases(FIXTURES / "cases", options.case)
     if not options.case:
         failures += check_certificates(FIXTURES / "certificates")
+        failures += check_models(FIXTURES.parent / "spec" / "models.toml")
     print(f"{time.monotonic() - start:.0f} s; {failures or 'nothing'} not proven")
     return 1 if failures else 0
 
@@ -204,11 +206,11 @@ def summarise(reports):
     progress("")
     values = count(reports, "values", PROVEN)
     points = count(reports, "values", AS_POINT)
-    print(
-        f"{len(reports)} cases: {values + points} numbers proven to be the nearest doubles, {points} of them as zeros or ties narrower than 2^-200;"
-        f"\n  {count(reports, 'scales', PROVEN)} scales proven, {count(reports, 'noises', PROVEN)} noises of a plausible size,"
-        f" {sum(report.rejected for report in reports)} problems rejected in their class; at most {max((r.bits for r in reports), default=0)} bits"
-    )
+    scales, noises = (count(reports, section, PROVEN) for section in ("scales", "noises"))
+    rejected, bits = sum(report.rejected for report in reports), max((report.bits for report in reports), default=0)
+    print(f"{len(reports)} cases: {values + points} numbers proven to be the nearest doubles,")
+    print(f"  {points} of them as zeros or ties that a ball narrower than 2^-200 holds; at most {bits} bits;")
+    print(f"  {scales} scales proven, {noises} noises of a plausible size, {rejected} problems rejected in their class")
 
 
 def count(reports, section, verdict):
@@ -226,6 +228,13 @@ def check_certificates(folder):
             failures += complain(f"{path.name}: {error}")
     print(f"{proven} certificates proven, {inequalities} inequalities")
     return failures
+
+
+def check_models(path):
+    """Every named model; gives the number of what is wrong."""
+    wrong, results, places = rows.check(path)
+    print(f"{results} results of worked examples of named models proven, their formulas compared with their slopes at {places} places")
+    return sum(complain(sentence) for sentence in wrong)
 
 
 if __name__ == "__main__":

@@ -104,11 +104,17 @@ def stumpff(order, x):
 
 def sinc(x):
     """sin x/x = ₀F₁(; 3/2; −x²/4), with the slope −x/3 · ₀F₁(; 5/2; −x²/4): both have a value at zero."""
-
-    def confluent(v, half):
-        return (-square(v) / 4).hypgeom([], [arb(half) / 2])
-
     return chain(x, lambda v: confluent(v, 3), lambda v: -v / 3 * confluent(v, 5))
+
+
+def bessel_1(x):
+    """j₁(x) = sin x/x² − cos x/x = x/3 · ₀F₁(; 5/2; −x²/4), with the slope ₀F₁(; 5/2)/3 − x²/15 · ₀F₁(; 7/2)."""
+    return chain(x, lambda v: v / 3 * confluent(v, 5), lambda v: confluent(v, 5) / 3 - square(v) / 15 * confluent(v, 7))
+
+
+def confluent(v, halves):
+    """₀F₁(; halves/2; −v²/4)."""
+    return (-square(v) / 4).hypgeom([], [arb(halves) / 2])
 
 
 FUNCTIONS = {

@@ -1,7 +1,7 @@
 """The self-test: what is wrong must be refused.
 
-Published numbers are moved by one unit in the last place, both ways; files, traces and certificates are altered; and equations of the checker
-itself are replaced by mistakes that people make. Each of these must be noticed, or the self-test fails.
+Published numbers are moved by one unit in the last place, both ways; files, traces, certificates and rows of named models are altered; and
+equations of the checker itself are replaced by mistakes that people make. Each of these must be noticed, or the self-test fails.
 """
 
 import copy
@@ -10,6 +10,7 @@ import json
 import math
 import random
 import tempfile
+import tomllib
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from unittest.mock import patch
@@ -17,7 +18,8 @@ from unittest.mock import patch
 import certificates
 import check
 import mistaken
-from balls import WRONG, Undecided, judge, judge_rounded, three_digits
+import rows
+from balls import WRONG, Undecided, judge, judge_rounded, set_bits, three_digits
 from compare import Tally, leaves
 
 SEED = 20001
@@ -32,6 +34,8 @@ def main():
     entries = json.loads((folder / "lock.json").read_text())["cases"]
     missed = moved_numbers(folder, entries) + altered_traces(folder, entries) + altered_files(folder, entries)
     missed += mistaken_equations(folder) + altered_certificates(check.FIXTURES / "certificates")
+    set_bits(rows.BITS)
+    missed += altered_models(check.FIXTURES.parent / "spec" / "models.toml")
     for sentence in missed[:SHOWN]:
         print(f"NOT NOTICED  {sentence}")
     print("every mistake is noticed" if not missed else f"{len(missed)} mistakes are not noticed")
@@ -57,7 +61,7 @@ def decided(raw, trace):
 
 
 def moved_numbers(folder, entries):
-    """Every number of a step, one unit in the last place up and down; every scale, two in its third digit. Of long runs some steps are drawn."""
+    """Every number of a step, one unit in the last place up and down, and every scale, two in its third digit; of long runs some steps."""
     return in_parallel(moved_in_a_case, folder, entries, "numbers moved by one in the last place")
 
 
@@ -283,12 +287,13 @@ def other_filters(certificate):
     return True
 
 
+UNIT_FORM = [["1", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]]
 CERTIFICATE_ALTERATIONS = {
     "another digest": another_digest,
     "other filters": other_filters,
     "a form that is negative": in_stable(lambda proof: proof["forms"][0][0].__setitem__(0, "-1")),
     "a form that is not symmetric": in_stable(lambda proof: proof["forms"][0][0].__setitem__(1, "1/3")),
-    "a form that does not fall": in_stable(lambda proof: proof["forms"].__setitem__(0, [["1", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]])),
+    "a form that does not fall": in_stable(lambda proof: proof["forms"].__setitem__(0, UNIT_FORM)),
     "an edge too few": in_stable(lambda proof: proof["edges"].pop()),
     "an edge to nowhere": in_stable(lambda proof: proof["edges"][0].__setitem__(2, 7)),
     "no form and no edge": in_stable(lambda proof: proof.update(forms=[], edges=[])),
@@ -297,3 +302,33 @@ CERTIFICATE_ALTERATIONS = {
     "a word that is stable": in_unstable("word", "v"),
     "the empty word": in_unstable("word", ""),
 }
+
+
+# -------------------------------------------------------------------------------------------------------------- named models
+
+
+def altered_models(path):
+    """One digit of each result of an example, and each formula a little greater."""
+    missed, altered = [], 0
+    for row in tomllib.loads(path.read_text())["model"]:
+        for what, is_noticed in alterations_of_row(row):
+            altered += 1
+            if not is_noticed:
+                missed.append(f"models.toml, {row['id']}: {what}")
+    print(f"{altered} results and formulas of named models altered")
+    return missed
+
+
+def alterations_of_row(row):
+    """What is altered, and whether it is noticed."""
+    for example in row["example"]:
+        for i, text in enumerate(example["result"]):
+            other = copy.deepcopy(example)
+            other["result"][i] = text[:-1] + ("1" if text[-1] != "1" else "2")
+            yield f"result {text}", rows.wrong_results(row, other)
+    for key in ("formulas", "Q", "G"):
+        for i, line in enumerate(row.get(key, [])):
+            for j in range(1 if key == "formulas" else 0, len(line)):
+                other = copy.deepcopy(row)
+                other[key][i][j] = f"{line[j]} + T/1000"
+                yield f"{key} {line[j]}", not rows.agrees(other, random.Random(SEED))

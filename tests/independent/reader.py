@@ -4,13 +4,15 @@ Every number is the double nearest to its decimal, and exact from there on. A pr
 problem that must be rejected is said in `validity.py`.
 """
 
-from flint import arb_mat
+from flint import arb, arb_mat
 
 from balls import column, exact, matrix
 from conversion import convert, entries_of
 from filters import Estimate, Seen
 from formulas import Affine, Curved, Scope, atan2, evaluate, hypot, rows_of
+from models import measurement as named_measurement
 from models import motion
+from noises import noise
 
 MATRIX_FILTERS = ("kalman", "converted", "fixed-gain")
 
@@ -54,8 +56,7 @@ class Problem:
             function = self.of_formulas(mode["f"], self.scope(j, at))
         else:
             asked = mode["motion"]
-            given = self.scope(j, at)
-            given.known |= {name: exact(x) for name, x in asked.get("parameters", {}).items()}
+            given = bound(self.scope(j, at), asked)
             function = Curved(motion(asked["model"], self.state, given, asked.get("others")))
         return function.as_affine(len(self.state)) if self.filters[j]["kind"] in MATRIX_FILTERS else function
 
@@ -69,9 +70,11 @@ class Problem:
         return Curved(function)
 
     def noise(self, j, at):
-        """Q of mode j: numbers, or formulas among which numbers may stand."""
+        """Q of mode j: numbers, formulas among which numbers may stand, or a named model."""
         rows = at["Q"][j] if "Q" in at else self.raw["modes"][j]["Q"]
         scope = self.scope(j, at)
+        if isinstance(rows, dict):
+            return noise(rows["model"], self.state, bound(scope, rows))
         return arb_mat([[evaluate(x, scope) if isinstance(x, str) else exact(x) for x in row] for row in rows])
 
     def sensor(self, at):
@@ -100,10 +103,11 @@ class Problem:
             return Affine(matrix(rows)), [False] * len(rows)
         if measurement["kind"] == "range-bearing":
             return of_sensor(measurement), [kind == "bearing" for kind in measurement["components"]]
+        scope = Scope({name: exact(x) for name, x in self.raw.get("parameters", {}).items()}, self.raw.get("let", []))
         if measurement["kind"] == "formulas":
-            scope = Scope({name: exact(x) for name, x in self.raw.get("parameters", {}).items()}, self.raw.get("let", []))
             return self.of_formulas(measurement["h"], scope), [is_angle(entry) for entry in measurement["z"]]
-        raise NotImplementedError(f"measurements of kind {measurement['kind']}")
+        function, angles = named_measurement(measurement["model"], self.state, bound(SENSOR, measurement))
+        return Curved(function), angles
 
     def converted(self, measurement, z, noise):
         """The position that range and bearing show: sustika2015 (20)-(26) and its kin."""
@@ -113,6 +117,14 @@ class Problem:
         pick = arb_mat([[int(entry == place) for entry in range(len(self.state))] for place in measurement["position"]])
         values = {"converted_measurement": position, "converted_covariance": covariance}
         return Seen(Affine(pick), covariance, position, [False, False]), values
+
+
+SENSOR = Scope({f"sensor_{entry}": arb(0) for entry in ("x", "y", "z", "vx", "vy", "vz")}, [])  # where nothing else is said
+
+
+def bound(scope, asked):
+    """The scope with the parameters that a named model is given."""
+    return Scope({**scope.known, **{name: exact(x) for name, x in asked.get("parameters", {}).items()}}, scope.definitions)
 
 
 def is_angle(entry):

@@ -117,8 +117,7 @@ def check_sensor(raw, measurement, noise):
     """A measurement and its R belong together, and to the filter."""
     kind = measurement["kind"]
     demand(kind in MEASUREMENTS, "unknown", "measurement.kind")
-    demand(kind != "model", "unknown", "measurement.kind: named models of measurements are not written here")
-    entries = len(measurement[{"linear": "H", "range-bearing": "components", "formulas": "h"}[kind]])
+    entries = len(noise if kind == "model" else measurement[{"linear": "H", "range-bearing": "components", "formulas": "h"}[kind]])
     filter = raw["filter"]["kind"]
     if kind == "linear":
         check_matrix(measurement["H"], entries, len(raw["state"]), "measurement.H")
