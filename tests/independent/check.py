@@ -2,7 +2,7 @@
 """Proves every certified number of `fixtures/` again, in ball arithmetic, with nothing of the crate, and compares the named models.
 
     python3 tests/independent/check.py                      all cases, certificates and named models
-    python3 tests/independent/check.py --case ID --case ID  these cases
+    python3 tests/independent/check.py --case ID ID …       these cases
     python3 tests/independent/check.py --self-test          whether it would notice a mistake
     python3 tests/independent/check.py --drawn 40           problems drawn at random, certified by the program
 
@@ -153,7 +153,7 @@ def computed(raw, bits):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--case", action="append", metavar="ID", help="only this case; may be repeated")
+    parser.add_argument("--case", action="extend", nargs="+", metavar="ID", help="only these cases")
     parser.add_argument("--self-test", action="store_true", help="whether mistakes would be noticed")
     parser.add_argument("--drawn", type=int, metavar="N", help="so many problems drawn at random, certified by the program IMMACULATE")
     options = parser.parse_args()
