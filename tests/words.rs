@@ -13,6 +13,7 @@ use immaculate::oracle::case::{self, BadCase};
 use immaculate::oracle::certify::Certified;
 use immaculate::oracle::check::{CaseReport, Outcome, Report};
 use immaculate::oracle::diagnose::{Diagnosis, Share};
+use immaculate::oracle::formula::{Formulas, Found};
 use immaculate::oracle::invalid::{Class, Invalid};
 use immaculate::oracle::judge::{Finding, Judged, Judgement, OwnError};
 use immaculate::oracle::problem::FilterFile;
@@ -106,6 +107,14 @@ fn every_kind_of_diagnosis() {
         Diagnosis::InParts {
             parts: Vec::new(),
             unexplained: vec!["case-1".into()],
+            formulas: Formulas::default(),
+            of: 1,
+            pairs: false,
+        },
+        Diagnosis::InParts {
+            parts: Vec::new(),
+            unexplained: vec!["case-1".into()],
+            formulas: formulas(),
             of: 1,
             pairs: false,
         },
@@ -148,6 +157,7 @@ fn of_every_outcome() -> Report {
         error: 0.25,
         own,
         hidden: Vec::new(),
+        explained: None,
     };
     let mut stopped = wrong(
         "stopped-early",
@@ -225,8 +235,39 @@ fn in_parts(parts: &[(&[&'static Variant], usize)], unexplained: usize) -> Diagn
     Diagnosis::InParts {
         parts: parts.iter().map(part).collect(),
         unexplained: (1..=unexplained).map(|number| format!("case-{number}")).collect(),
+        formulas: Formulas::default(),
         of: unexplained + parts.iter().map(|(_, cases)| cases).sum::<usize>(),
         pairs: true,
+    }
+}
+
+/// Formulas that explain all, one everywhere and one at some values only.
+fn formulas() -> Formulas {
+    let found = |quantity, computed: &str, right: &str, condition: Option<&str>| Found {
+        quantity,
+        filters: vec!["kalman".into()],
+        computed: computed.into(),
+        right: right.into(),
+        explains: 12,
+        of: 12,
+        condition: condition.map(str::to_owned),
+    };
+    Formulas {
+        found: vec![
+            found(
+                Gain,
+                "cross_covariance",
+                "cross_covariance · innovation_covariance⁻¹",
+                None,
+            ),
+            found(
+                Quantity::UpdatedMean,
+                "predicted.mean",
+                "predicted.mean + gain · innovation",
+                Some("at step 2 only"),
+            ),
+        ],
+        is_complete: true,
     }
 }
 
@@ -295,6 +336,7 @@ fn fault(quantity: Quantity, mode: usize) -> Judged {
             size: 0.137,
         }),
         hidden: Vec::new(),
+        explained: None,
     }
 }
 

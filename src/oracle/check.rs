@@ -7,7 +7,7 @@ use super::behaviour::{NotAsked, Unasked};
 use super::case::{self, BadCase, Case, Expected};
 use super::certify::certified_as_far_as_it_goes;
 use super::diagnose::{Evidence, diagnose};
-use super::evidence::{Beginning, evidence_of};
+use super::evidence::{Beginning, evidence_of, explain_first_faults};
 use super::invalid::Invalid;
 use super::judge::{self, Finding, Judgement, Reference};
 use super::problem::{FORMAT, FORMAT_2, ProblemFile, kinds};
@@ -312,6 +312,8 @@ fn ask(subject: &mut dyn Subject, questions: &[Question], progress: &dyn Fn(&str
         .iter()
         .map(|(index, problem, (shown, reference))| evidence_of(&cases[*index], problem, shown, reference, &ready))
         .collect();
+    let pieces: Vec<(usize, &Evidence)> = answered.iter().map(|(index, ..)| *index).zip(&evidence).collect();
+    explain_first_faults(&mut cases, &pieces, &conventions)?;
     for beginning in &beginnings {
         let (
             case,

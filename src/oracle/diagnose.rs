@@ -8,6 +8,7 @@
 //! where enough is shown, mistakes in different equations are independent. Where too little is shown for that, all pairs are tried. Where
 //! only some filters of a program are wrong, they are taken by themselves.
 
+use super::formula::{self, Formulas};
 use super::invalid::Invalid;
 use super::judge::{Case, Place};
 use super::setup::Setup;
@@ -35,6 +36,19 @@ pub struct Evidence<'a> {
     pub is_beginning: bool,
 }
 
+impl<'a> Evidence<'a> {
+    /// That of a case in which everything is right.
+    pub fn of_right(case: Case<'a>) -> Self {
+        Self {
+            case,
+            passed: BTreeSet::new(),
+            is_faulty: false,
+            steps_to_fault: usize::MAX,
+            is_beginning: false,
+        }
+    }
+}
+
 /// Pairs are looked for where the shortest faulty run has at most so many steps: on two modes of five states that takes half a minute.
 const MOST_STEPS_FOR_PAIRS: usize = 12;
 
@@ -59,6 +73,8 @@ pub enum Diagnosis {
         unexplained: Vec<String>,
         /// The number of faulty cases.
         of: usize,
+        /// What was computed in these instead.
+        formulas: Formulas,
         /// Whether all pairs were tried, too; for long runs they are too many.
         pairs: bool,
     },
@@ -76,7 +92,12 @@ pub struct Share {
 impl Diagnosis {
     /// Whether something explains every faulty case.
     fn is_known(&self) -> bool {
-        !matches!(self, Self::InParts { unexplained, .. } if !unexplained.is_empty())
+        match self {
+            Self::InParts {
+                unexplained, formulas, ..
+            } => unexplained.is_empty() || formulas.is_complete,
+            _ => true,
+        }
     }
 
     /// Whether all that was found is forms and conventions, which are not wrong.
@@ -89,8 +110,8 @@ impl Diagnosis {
             Self::ByFilter(filters) => filters
                 .iter()
                 .all(|(_, of_filter)| matches!(of_filter, Self::Nothing) || of_filter.is_excuse()),
-            Self::InParts { parts, .. } => {
-                self.is_known() && parts.iter().flat_map(|part| &part.variants).all(is_no_mistake)
+            Self::InParts { parts, unexplained, .. } => {
+                unexplained.is_empty() && parts.iter().flat_map(|part| &part.variants).all(is_no_mistake)
             }
             Self::Nothing => false,
         }
@@ -109,33 +130,40 @@ pub fn diagnose(evidence: &[Evidence], conventions: &[&str]) -> Result<Diagnosis
     }
     let by_filter = by_filter(evidence, conventions)?;
     let is_known = |(_, found): &(String, Diagnosis)| found.is_known();
-    if by_filter.len() > 1 && by_filter.iter().all(is_known) {
+    if !by_filter.is_empty() && by_filter.iter().all(is_known) {
         return Ok(Diagnosis::ByFilter(by_filter));
+    }
+    let in_parts = search.in_parts(Some(evidence))?;
+    if in_parts.is_known() {
+        return Ok(in_parts);
     }
     if let Some(found) = search.pairs()? {
         return Ok(found);
     }
-    let in_parts = search.in_parts()?;
-    if !in_parts.is_known() && by_filter.len() > 1 && by_filter.iter().any(is_known) {
+    let has_formulas = matches!(&in_parts, Diagnosis::InParts { formulas, .. } if !formulas.found.is_empty());
+    if !has_formulas && by_filter.iter().any(is_known) {
         return Ok(Diagnosis::ByFilter(by_filter));
     }
     Ok(in_parts)
 }
 
-/// The evidence filter by filter, as long as there are several and one is without fault or explained.
+/// The evidence filter by filter; nothing where there is one filter only.
 fn by_filter(evidence: &[Evidence], conventions: &[&str]) -> Result<Vec<(String, Diagnosis)>, Invalid> {
     let name_of = |evidence: &Evidence| evidence.case.problem.kinds().join(" + ");
     let mut names: Vec<String> = evidence.iter().map(name_of).collect();
     names.sort_unstable();
     names.dedup();
     let mut found = Vec::new();
+    if names.len() == 1 {
+        return Ok(found);
+    }
     for name in names {
         let of_filter = |evidence: &&Evidence| name_of(evidence) == name;
         let own: Vec<Evidence> = evidence.iter().filter(of_filter).cloned().collect();
         let search = Search::new(&own, conventions)?;
         let diagnosis = match search.quickly()? {
             Some(diagnosis) => diagnosis,
-            None => search.in_parts()?,
+            None => search.in_parts(None)?,
         };
         found.push((name, diagnosis));
     }
@@ -318,7 +346,8 @@ impl<'a> Search<'a> {
     }
 
     /// What explains most faulty cases and no right case refutes; then what does of the rest.
-    fn in_parts(&self) -> Result<Diagnosis, Invalid> {
+    /// And where evidence is given, the formulas that were computed in what nothing in the catalogue explains.
+    fn in_parts(&self, of_formulas: Option<&[Evidence]>) -> Result<Diagnosis, Invalid> {
         let is_whole = |(evidence, _): &&Piece| evidence.is_faulty && !evidence.is_beginning;
         let mut open: Vec<&Piece> = self.evidence.iter().filter(is_whole).collect();
         let of = open.len();
@@ -331,12 +360,22 @@ impl<'a> Search<'a> {
             });
             open = rest;
         }
+        let unexplained: Vec<String> = open
+            .iter()
+            .map(|(evidence, _)| evidence.case.problem.id.clone())
+            .collect();
+        let is_open = |piece: &&Evidence| !piece.is_faulty || unexplained.contains(&piece.case.problem.id);
+        let formulas = match of_formulas.filter(|_| !unexplained.is_empty()) {
+            None => Formulas::default(),
+            Some(evidence) => {
+                let rest: Vec<Evidence> = evidence.iter().filter(is_open).cloned().collect();
+                formula::find(&rest, &self.conventions)?
+            }
+        };
         Ok(Diagnosis::InParts {
             parts,
-            unexplained: open
-                .iter()
-                .map(|(evidence, _)| evidence.case.problem.id.clone())
-                .collect(),
+            unexplained,
+            formulas,
             of,
             pairs: self.has_time_for_pairs(),
         })

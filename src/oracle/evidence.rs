@@ -1,6 +1,8 @@
 //! What is explained: the answers of a program, long ones by their beginnings first.
 
 use super::diagnose::Evidence;
+use super::formula::explain;
+use super::invalid::Invalid;
 use super::judge::{self, Finding, Judged, LIMIT, Reference};
 use super::problem::ProblemFile;
 use super::subject::Ready;
@@ -72,4 +74,32 @@ pub(super) fn evidence_of<'a>(
         steps_to_fault: report.first_fault().unwrap_or(usize::MAX),
         is_beginning: false,
     }
+}
+
+/// Puts numbers into the equation of the first fault of each quantity. Each piece of evidence stands with the place of its case.
+pub(super) fn explain_first_faults(
+    cases: &mut [CaseReport],
+    evidence: &[(usize, &Evidence)],
+    conventions: &[&str],
+) -> Result<(), Invalid> {
+    let mut seen = BTreeSet::new();
+    for (case, evidence) in evidence {
+        let values = cases[*case]
+            .judgement
+            .iter_mut()
+            .flat_map(|judgement| &mut judgement.values);
+        let is_first = |value: &&mut Judged| value.finding.is_fault() && seen.insert(value.place.1);
+        let mut first: Vec<(&mut Judged, usize)> = values
+            .filter(is_first)
+            .filter_map(|value| value.own.map(|own| (value, own.index)))
+            .collect();
+        if first.is_empty() {
+            continue;
+        }
+        let entries: Vec<_> = first.iter().map(|(value, index)| (value.place, *index)).collect();
+        for ((value, _), explained) in first.iter_mut().zip(explain(evidence, conventions, &entries)?) {
+            value.explained = explained;
+        }
+    }
+    Ok(())
 }

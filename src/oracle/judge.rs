@@ -9,6 +9,7 @@
 //! - or it is of a mode of probability zero, which no output depends on: then it is **unused**;
 //! - and where the noise is as large as the value's unit, nobody **can tell**.
 
+use super::formula::Explanation;
 use super::invalid::Invalid;
 use super::noise;
 use super::problem::ProblemFile;
@@ -26,7 +27,7 @@ use std::collections::BTreeSet;
 pub const LIMIT: f64 = 100.0;
 
 /// No noise is meant beyond so much of it; the spread of two runs is hardly ever a ten-thousandth of what eight would give.
-const FAR: f64 = 1e6;
+pub(super) const FAR: f64 = 1e6;
 
 /// A value of a trace: step, quantity, mode.
 pub type Place = (usize, Quantity, usize);
@@ -72,6 +73,8 @@ pub struct Judged {
     pub own: Option<OwnError>,
     /// The quantities that were not shown between this value and the shown ones that it depends on.
     pub hidden: Vec<Quantity>,
+    /// Of the first fault of each equation, the equation with the program's numbers in it.
+    pub explained: Option<Explanation>,
 }
 
 /// The error of a value against its own equation on the program's own inputs.
@@ -109,7 +112,7 @@ impl Judgement {
 ///
 /// A quantity has one noise, in units of scale: the greatest of its numbers', and at least a unit roundoff. A number that happens to be
 /// spared, because it is zero by structure or its errors cancel, is not spared in other algebra.
-fn compare(
+pub(super) fn compare(
     shown: &[f64],
     expected: &[f64],
     noise: &[f64],
@@ -171,7 +174,7 @@ pub struct Case<'a> {
 
 impl Case<'_> {
     /// The error of a shown value against what is expected, in noise and in its scale; none where nothing is expected.
-    fn error(&self, place: Place, expected: &Trace, noise: &Trace) -> Option<OwnError> {
+    pub(super) fn error(&self, place: Place, expected: &Trace, noise: &Trace) -> Option<OwnError> {
         let (step, quantity, mode) = place;
         let shown = self.shown.get(step, quantity, mode)?;
         let expected = expected.get(step, quantity, mode)?;
@@ -241,6 +244,7 @@ impl Case<'_> {
                 error: against_certified.map_or(f64::NAN, |error| error.size),
                 own: against_own,
                 hidden: names,
+                explained: None,
             });
         }
         Ok(Judgement { values, failures })
@@ -291,7 +295,7 @@ impl Case<'_> {
     }
 
     /// The run along the shown values.
-    fn run<'b>(&'b self, variants: &'b [&'b str]) -> Run<'b> {
+    pub(super) fn run<'b>(&'b self, variants: &'b [&'b str]) -> Run<'b> {
         Run {
             problem: self.problem,
             variants,

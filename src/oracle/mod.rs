@@ -65,6 +65,7 @@ mod evidence;
 mod filter_file;
 pub mod flags;
 pub mod folder;
+pub mod formula;
 pub mod invalid;
 pub mod judge;
 pub mod models;

@@ -69,6 +69,9 @@ fn own_values<T: Real>(quantity: Quantity, shown: &[f64], number: fn(f64) -> T, 
     (0..shown.len()).map(|index| number(shown[place(index)])).collect()
 }
 
+/// Who is told the record of each step as it is done.
+type Told<'a, T> = &'a mut dyn FnMut(Option<&Step<T, Dyn, Dyn>>);
+
 impl<T: Real> Setup<T> {
     /// The dimensions of the problem.
     pub fn dimensions(&self) -> Dimensions {
@@ -82,15 +85,16 @@ impl<T: Real> Setup<T> {
 
     /// Runs the problem.
     pub fn run(&self) -> Computed<T> {
-        self.exchange(None, |_| T::undecided(), Triangle::Lower)
+        self.exchange(None, |_| T::undecided(), Triangle::Lower, &mut |_| {})
     }
 
     /// Runs the problem along the values that another program shows, which `number` puts into this number system.
     pub fn run_along(&self, shown: &Trace, number: fn(f64) -> T, triangle: Triangle) -> Computed<T> {
-        self.exchange(Some(shown), number, triangle)
+        self.exchange(Some(shown), number, triangle, &mut |_| {})
     }
 
-    fn exchange(&self, shown: Option<&Trace>, number: fn(f64) -> T, triangle: Triangle) -> Computed<T> {
+    /// `done` is told the record of each step, or that it could not be computed.
+    fn exchange(&self, shown: Option<&Trace>, number: fn(f64) -> T, triangle: Triangle, done: Told<T>) -> Computed<T> {
         let mut filter = self.filter();
         let mut values = Table::empty(&self.dimensions());
         let mut failures = Vec::new();
@@ -104,9 +108,14 @@ impl<T: Real> Setup<T> {
             if !self.changes.is_empty() {
                 filter.change_unchecked(self.problem_of(index + 1));
             }
-            let Err(failure) = filter.step_observed(measurement.as_ref(), &mut exchange) else {
-                continue;
+            let failure = match filter.step_observed(measurement.as_ref(), &mut exchange) {
+                Ok(record) => {
+                    done(Some(record));
+                    continue;
+                }
+                Err(failure) => failure,
             };
+            done(None);
             failures.push(failure);
             // The run can go on if the program shows all that the next step needs.
             let Some(shown) = shown else { break };
@@ -117,6 +126,19 @@ impl<T: Real> Setup<T> {
             }
         }
         Computed { values, failures }
+    }
+}
+
+/// The record of a step in doubles; none where it could not be computed.
+pub(super) type Record = Option<Step<RandomRounding, Dyn, Dyn>>;
+
+impl Setup<RandomRounding> {
+    /// The records of all steps, step 0 first, with the values that another program shows in them; and what was computed.
+    pub(super) fn steps_along(&self, shown: &Trace) -> (Vec<Record>, Computed<RandomRounding>) {
+        let mut records = vec![Some(self.filter().current().clone())];
+        let mut keep = |record: Option<&Step<_, _, _>>| records.push(record.cloned());
+        let computed = self.exchange(Some(shown), RandomRounding::exact, Triangle::Lower, &mut keep);
+        (records, computed)
     }
 }
 

@@ -4,11 +4,13 @@
 //! matters.
 
 use super::behaviour::behaviours;
+use super::formula;
 use super::{table, wrapped};
 use crate::imm::Quantity;
 use crate::oracle::behaviour::Unasked;
 use crate::oracle::check::{CaseReport, Outcome, Report};
 use crate::oracle::diagnose::{Diagnosis, Share};
+use crate::oracle::formula::Formulas;
 use crate::oracle::judge::{Finding, Judged};
 use crate::oracle::subject::Broken;
 use crate::oracle::variant::{Kind, Variant};
@@ -111,6 +113,9 @@ fn faults(report: &Report) -> String {
             case.filters[judged.place.2].equation(quantity)
         );
         text.push_str(&wrapped(&first_fault(case, judged, report), "  "));
+        if let Some(explained) = &judged.explained {
+            text.push_str(&formula::explained(explained));
+        }
         if !judged.hidden.is_empty() {
             let names: Vec<&str> = judged.hidden.iter().map(|quantity| quantity.name()).collect();
             let sentence = format!(
@@ -265,21 +270,22 @@ fn diagnosis(diagnosis: &Diagnosis) -> String {
         Diagnosis::InParts {
             parts,
             unexplained,
+            formulas,
             of,
             pairs,
-        } => text.push_str(&in_parts(parts, unexplained, *of, *pairs)),
+        } => text.push_str(&in_parts(parts, unexplained, formulas, *of, *pairs)),
     }
     text
 }
 
 /// What is said where no one thing explains all.
-fn in_parts(parts: &[Share], unexplained: &[String], of: usize, pairs: bool) -> String {
-    let mut text = if unexplained.is_empty() {
-        String::from("\nMOST LIKELY, IN DIFFERENT CASES\n")
-    } else {
-        String::from("\nCAUSE  Nothing in the catalogue, alone or with others, explains every value.\n")
-    };
-    if !pairs && !unexplained.is_empty() {
+fn in_parts(parts: &[Share], unexplained: &[String], formulas: &Formulas, of: usize, pairs: bool) -> String {
+    let mut text = String::from(match (unexplained.is_empty(), formulas.is_complete) {
+        (true, _) => "\nMOST LIKELY, IN DIFFERENT CASES\n",
+        (false, true) => "\nCAUSE  What no entry of the catalogue explains, the formulas below do.\n",
+        (false, false) => "\nCAUSE  Nothing in the catalogue, alone or with others, explains every value.\n",
+    });
+    if !pairs && !unexplained.is_empty() && !formulas.is_complete {
         text.push_str("  Of pairs in the same equation not all were tried: the run is long until its first fault.\n");
     }
     for (index, part) in parts.iter().enumerate() {
@@ -295,9 +301,14 @@ fn in_parts(parts: &[Share], unexplained: &[String], of: usize, pairs: bool) -> 
     if !unexplained.is_empty() && !parts.is_empty() {
         let named: Vec<&str> = unexplained.iter().take(5).map(String::as_str).collect();
         let more = if unexplained.len() > named.len() { ", …" } else { "" };
-        text.push_str(&wrapped(&format!("Unexplained: {}{more}", named.join(", ")), "  "));
+        let by_it = if formulas.is_complete {
+            "The catalogue leaves"
+        } else {
+            "Unexplained"
+        };
+        text.push_str(&wrapped(&format!("{by_it}: {}{more}", named.join(", ")), "  "));
     }
-    text
+    text + &formula::text(formulas)
 }
 
 /// What was judged and what was not.

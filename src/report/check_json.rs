@@ -97,6 +97,7 @@ fn value_json(value: &Judged, equation: &str, names: &dyn Fn(&[Quantity]) -> Vec
             "error_in_units": own.size,
         })),
         "hidden": names(&value.hidden),
+        "explained": value.explained.as_ref().map(super::formula::explained_json),
     })
 }
 
@@ -133,6 +134,7 @@ fn diagnosis_json(diagnosis: &Diagnosis) -> Value {
         Diagnosis::InParts {
             parts,
             unexplained,
+            formulas,
             of,
             pairs,
         } => {
@@ -140,6 +142,7 @@ fn diagnosis_json(diagnosis: &Diagnosis) -> Value {
             json!({
                 "parts": parts.iter().map(of_part).collect::<Vec<_>>(),
                 "unexplained": unexplained,
+                "formulas": super::formula::json(formulas),
                 "faulty_cases": of,
                 "pairs_tried": pairs,
             })

@@ -23,6 +23,7 @@ pub mod divergence;
 pub mod equation;
 pub mod figure;
 pub mod fit_error;
+mod formula;
 pub mod literal;
 pub mod long_term;
 pub mod page;

@@ -1,0 +1,29 @@
+//! The formula that a program computed, where it is not the right one and has no name in the catalogue.
+//!
+//! After this folder the reader knows how a mistake that nobody has listed is found. Of each value the right formula is a small tree, in
+//! the forms in which programs write it. Trees one edit away are evaluated on the program's own values; the one that gives what is shown,
+//! to rounding and wherever the right one does not, is what was computed.
+//!
+//! ```text
+//! right ─▶ edit ─▶ candidates ─┬─ evaluated at the faulty values ─▶ the few that give them ─▶ at all values ─▶ the nearest
+//! instance (a value and all that the program showed beside it) ─┘
+//! ```
+//!
+//! Reading order: `tree`, `print` and `value` say what a formula is; `instance` where its numbers come from; `right` has the right ones,
+//! `edit` what is near them, `search` finds the one that was computed, and `condition` where; `explain` puts numbers into the right one.
+
+mod condition;
+mod edit;
+mod explain;
+mod instance;
+mod print;
+mod right;
+mod search;
+mod tree;
+mod value;
+
+pub use explain::Explanation;
+pub(super) use explain::explain;
+pub(crate) use explain::short;
+pub(super) use search::find;
+pub use search::{Formulas, Found, unlike_the_equations};

@@ -1,0 +1,74 @@
+//! The formulas that a program computed in place of right ones, for people and as JSON.
+
+use super::wrapped;
+use crate::oracle::formula::{Explanation, Formulas, Found, short};
+use serde_json::{Value, json};
+use std::fmt::Write;
+
+pub(super) fn text(formulas: &Formulas) -> String {
+    formulas.found.iter().map(one).collect()
+}
+
+/// A paragraph: where, what was computed, and what should have been.
+fn one(found: &Found) -> String {
+    let mut text = format!("\nCOMPUTED  {}, {}", found.quantity.name(), found.filters.join(", "));
+    if let Some(condition) = &found.condition {
+        let _ = write!(text, ", {condition}");
+    }
+    text.push('\n');
+    text.push_str(&wrapped(&found.computed, "    "));
+    let _ = writeln!(
+        text,
+        "  gives what is shown in {} of {} faulty values, and should be",
+        found.explains, found.of
+    );
+    text.push_str(&wrapped(&found.right, "    "));
+    text
+}
+
+pub(super) fn json(formulas: &Formulas) -> Value {
+    let of_one = |found: &Found| {
+        json!({
+            "quantity": found.quantity.name(),
+            "filters": found.filters,
+            "computed": found.computed,
+            "right": found.right,
+            "explains": found.explains,
+            "faulty": found.of,
+            "condition": found.condition,
+        })
+    };
+    json!({ "found": formulas.found.iter().map(of_one).collect::<Vec<_>>(), "complete": formulas.is_complete })
+}
+
+/// The equation, what it is in numbers, and the term that is amiss if one is.
+pub(super) fn explained(explanation: &Explanation) -> String {
+    let Explanation {
+        equation,
+        numbers,
+        gives,
+        shown,
+        term,
+    } = explanation;
+    let difference = short(shown - gives);
+    let what = term.as_ref().map_or_else(String::new, |term| format!(": {term}"));
+    let sum = wrapped(&format!("{equation} = {numbers} = {}", short(*gives)), "    ");
+    format!(
+        "{sum}{}",
+        wrapped(
+            &format!("yours {}, the difference {difference}{what}", short(*shown)),
+            "    "
+        )
+    )
+}
+
+pub(super) fn explained_json(explanation: &Explanation) -> Value {
+    let Explanation {
+        equation,
+        numbers,
+        gives,
+        shown,
+        term,
+    } = explanation;
+    json!({ "equation": equation, "numbers": numbers, "gives": gives, "shown": shown, "term": term })
+}
