@@ -6,6 +6,7 @@
 
 mod cli;
 
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Parser, Subcommand};
 pub use cli::Refusal;
 use cli::{Done, print};
@@ -57,7 +58,15 @@ fn main() -> ExitCode {
         Ok(cli) => run(&cli),
         // Help and version are output like any other; what is wrong with arguments goes to standard error.
         Err(error) if !error.use_stderr() => Ok(error.render().to_string().into()),
-        Err(error) => error.exit(),
+        Err(error) => {
+            // Nothing is left to be done when not even the complaint can be written.
+            let _ = error.print();
+            if lacks_dashes(&error) {
+                let sentence = "put `--` before the program that is checked: `immaculate check -- PROGRAM ARGUMENTS`";
+                return complain(sentence, 2);
+            }
+            return ExitCode::from(2);
+        }
     };
     match done.and_then(|done| print(&done.text).map(|_| done)) {
         Ok(Done {
@@ -72,6 +81,15 @@ fn main() -> ExitCode {
         | Err(Refusal::Output(sentence)) => complain(&sentence, 1),
         Err(Refusal::Request(sentence)) => complain(&sentence, 2),
     }
+}
+
+/// Whether the arguments are those of a check with a program that no `--` stands before.
+fn lacks_dashes(error: &clap::Error) -> bool {
+    let mut arguments = std::env::args_os().skip(1);
+    let is_check = arguments.next().is_some_and(|command| command == "check");
+    let is_word =
+        matches!(error.get(ContextKind::InvalidArg), Some(ContextValue::String(word)) if !word.starts_with('-'));
+    error.kind() == ErrorKind::UnknownArgument && is_check && is_word && arguments.all(|argument| argument != "--")
 }
 
 /// Does what the arguments ask for.

@@ -1305,6 +1305,11 @@ fn a_wrong_long_csv_is_refused_with_its_line() {
         ("x,1,1,updated.covariance,1,-1,0", "line 3", "has column \"-1\""),
         ("x,1,,combined.mean,2,,nought", "line 3", "has value \"nought\""),
         ("x,1,,combined.mean,2", "line 3", "fewer than seven columns"),
+        (
+            "x,1,,combined.mean,2,,0,5",
+            "line 3",
+            "has 8 fields where 7 are needed: is the value written with a decimal comma?",
+        ),
         ("x,2,,mode_probabilities,1,,1", "line 3", "an earlier line has"),
         (
             "x,1,,combined.mean,2,,0",

@@ -66,8 +66,102 @@ fn a_program_that_never_says_anything_is_told_to_flush() {
 }
 
 #[test]
-fn a_program_that_said_something_is_not_told_to_flush() {
-    assert_eq!(refused("echo hello; exec sleep 20"), "no answer within 1 s");
+fn a_program_that_said_something_is_told_what_was_passed_over_and_not_to_flush() {
+    for said in ["hello", "Loading... {\"type\": \"ready\"}"] {
+        assert_eq!(
+            refused(&format!("echo '{said}'; exec sleep 20")),
+            format!("no answer within 1 s; a line that does not begin with `{{` was passed over: {said}")
+        );
+    }
+    assert_eq!(refused("echo; exec sleep 20"), "no answer within 1 s");
+}
+
+#[test]
+fn a_message_without_its_newline_is_told_so() {
+    assert_eq!(
+        refused("printf '{\"type\":\"ready\"}'; exec sleep 20"),
+        "no answer within 1 s; 16 bytes without a newline have arrived, and every message ends with one"
+    );
+    let answers = Answers::new("no newline");
+    let report = verdict(&answers.script(&[("update.cubature-3", "printf '{\"id\":'; sleep 20")]));
+    assert_eq!(
+        broken_sentence(&report, "update.cubature-3"),
+        "no answer within 1 s; 6 bytes without a newline have arrived, and every message ends with one"
+    );
+    assert_others_are_right(&report, "update.cubature-3");
+}
+
+/// `{}` and a newline in UTF-16, the little end first and last.
+#[test]
+fn a_message_in_utf_16_is_told_so() {
+    for said in ["\\377\\376{\\000}\\000\\n\\000", "\\376\\377\\000{\\000}\\000\\n"] {
+        assert_eq!(
+            refused(&format!("printf '{said}'; exec sleep 20")),
+            "no answer within 1 s; what has arrived is UTF-16, and messages are UTF-8"
+        );
+    }
+}
+
+/// As files may begin.
+#[test]
+fn a_line_may_begin_with_a_byte_order_mark() {
+    let answers = Answers::new("mark");
+    let cat = format!("printf '\\357\\273\\277'; {}", answers.cat("update.kalman"));
+    let script = answers.script(&[("update.kalman", &cat)]);
+    let report = verdict(&script.replacen("echo '{", "printf '\\357\\273\\277'; echo '{", 1));
+    assert_others_are_right(&report, "");
+}
+
+#[test]
+fn a_command_in_one_word_is_told_that_arguments_are_words() {
+    let refused = |command: &[&str]| {
+        let command = command.iter().map(|&word| word.to_owned()).collect();
+        let not_made = verdict_on(&mut Process::new(command, LIMIT), &["update.kalman"]).unwrap_err();
+        not_made.to_string()
+    };
+    let hint = "a program and its arguments are words of their own";
+    assert!(refused(&["python3 filter.py plain"]).contains(hint));
+    assert!(!refused(&["/no/such/program"]).contains(hint));
+    assert!(!refused(&["/no such/program", "plain"]).contains(hint));
+}
+
+#[test]
+fn a_program_that_ends_after_every_answer_is_started_again_and_told() {
+    let answers = Answers::new("once");
+    let cats = THREE.map(|id| (id, format!("{}; exit 0", answers.cat(id))));
+    let cats: Vec<(&str, &str)> = cats.iter().map(|(id, cat)| (*id, cat.as_str())).collect();
+    let report = verdict(&answers.script(&cats));
+    assert_others_are_right(&report, "");
+    assert!(!report.is_wrong());
+    assert_eq!(
+        report.remarks,
+        ["ended after an answer, in order, and was started again; it is meant to answer until `stop`"]
+    );
+    // One that ends in order without an answer is not started for ever.
+    let report = verdict(&answers.script(&[("update.cubature-3", "exit 0")]));
+    let sentence = broken_sentence(&report, "update.cubature-3");
+    assert_eq!(sentence, "the program ended (exit status: 0)");
+}
+
+/// The place is shown, not the beginning of a long line.
+#[test]
+fn a_decimal_comma_is_shown_where_it_stands() {
+    let answers = Answers::new("comma");
+    let numbers = "0.5,".repeat(200);
+    let report = verdict(&answers.script(&[("update.kalman", &format!("echo '{{\"steps\":[{numbers}0,05]}}'"))]));
+    let sentence = broken_sentence(&report, "update.kalman");
+    let words = "invalid number at line 1 column 814; is a number written with a decimal comma?: …";
+    assert!(
+        sentence.contains(words) && sentence.ends_with("0.5,0,05]}"),
+        "{sentence}"
+    );
+    // Between numbers of a list a comma is a comma.
+    let report = verdict(&answers.script(&[("update.kalman", "echo '{\"steps\":[1, 05]}'")]));
+    let sentence = broken_sentence(&report, "update.kalman");
+    assert!(
+        sentence.starts_with("not a message: invalid number at line 1 column 15: {"),
+        "{sentence}"
+    );
 }
 
 #[test]
@@ -332,10 +426,10 @@ fn an_answer_to_another_case_is_no_answer() {
 #[test]
 fn an_answer_that_comes_twice_is_remarked_upon() {
     let answers = Answers::new("twice");
-    let cat = answers.cat("update.kalman");
-    let report = verdict(&answers.script(&[("update.kalman", &format!("{cat}; {cat}; {cat}"))]));
+    let cat = answers.cat("update.cubature-3");
+    let report = verdict(&answers.script(&[("update.cubature-3", &format!("{cat}; {cat}; {cat}"))]));
     assert!(!report.is_wrong(), "{report:?}");
-    assert_eq!(report.remarks, ["answered `update.kalman` late or more than once"]);
+    assert_eq!(report.remarks, ["answered `update.cubature-3` late or more than once"]);
 }
 
 /// One line too many, then the right one: the cases after it must not be answered with the answers to those before.
@@ -479,7 +573,7 @@ fn a_program_that_leaves_validation_to_its_caller_is_not_asked_for_it() {
     let mut double = Double::new(right);
     double.ready.validates = false;
     let report = verdict_on(&mut double, &["rejected.", "update.kalman"]).unwrap();
-    assert_eq!(double.asked, ["update.kalman"]);
+    assert_eq!(sorted(&double.asked), ["update.kalman"]);
     assert!(not_asked(&report) >= 10 && !report.is_wrong());
     let mut double = Double::new(right);
     let report = verdict_on(&mut double, &["rejected."]).unwrap();
@@ -886,6 +980,11 @@ fn exit_statuses_are_those_of_the_help() {
             &["check", "--case", "update.kalman", "--", "/no/such/program"],
             "cannot be started",
         ),
+        (
+            &["check", "python3", "filter.py", "--fast"],
+            "put `--` before the program",
+        ),
+        (&["check", "--json", "./filter"], "put `--` before the program"),
         (&["check", "--answers", "/no/such/folder"], "is not a folder"),
         (&["check", "--answers", "x", "--", own], "cannot be used with"),
         (&["check", "--timeout", "0", "--", own], "'0'"),
@@ -1210,9 +1309,11 @@ fn assert_others_are_right(report: &Report, id: &str) {
     }
 }
 
+/// The ids that were asked, each once: the first case is asked again.
 fn sorted(ids: &[String]) -> Vec<String> {
     let mut ids = ids.to_vec();
     ids.sort();
+    ids.dedup();
     ids
 }
 

@@ -4,7 +4,8 @@
 //! where there is none.
 
 use super::invalid::{Class, Invalid};
-use super::trace::{Dimensions, Trace, is_not_finite};
+use super::json::is_not_finite;
+use super::trace::{Dimensions, Trace};
 use crate::imm::Quantity;
 use std::borrow::Cow;
 use std::fmt::Write;
@@ -71,6 +72,7 @@ pub fn read(text: &str, id: &str, dimensions: &Dimensions) -> Result<Trace, Inva
         .flexible(true)
         .from_reader(text.as_bytes());
     let header = reader.headers().map_err(|error| bad("line 1", error.to_string()))?;
+    let columns = header.len();
     let found: Vec<&str> = header.iter().take(7).collect();
     if found.join(",") != HEADER {
         return Err(bad("line 1", format!("is not {HEADER:?}")));
@@ -82,6 +84,14 @@ pub fn read(text: &str, id: &str, dimensions: &Dimensions) -> Result<Trace, Inva
         let fields: Vec<&str> = record.iter().collect();
         if fields.len() < 7 {
             return Err(bad(&place, "has fewer than seven columns"));
+        }
+        // Further columns are passed over, whether the header has them or not; one alone is half of a number.
+        if fields.len() == columns + 1 {
+            let reason = format!(
+                "has {} fields where {columns} are needed: is the value written with a decimal comma?",
+                fields.len()
+            );
+            return Err(bad(&place, reason));
         }
         if fields[0] == id {
             read_line(&mut trace, &mut seen, &fields, &place)?;

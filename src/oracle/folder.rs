@@ -44,6 +44,7 @@ impl Subject for Folder {
             });
         };
         read_json(&text)
+            .map_err(|error| error.reason)
             .and_then(|message| Ready::read(&message))
             .map_err(|reason| Broken::NotStarted(format!("{}: {reason}", self.path.join("ready.json").display())))
     }
@@ -58,9 +59,9 @@ impl Folder {
         let dimensions = problem.dimensions();
         let path = self.path.join(format!("{}.json", problem.id));
         if let Some(text) = read_file(&path)? {
-            let message = read_json(&text).map_err(|reason| Broken::Garbage {
+            let message = read_json(&text).map_err(|error| Broken::Garbage {
                 line: path.display().to_string(),
-                reason,
+                reason: error.reason,
             })?;
             return match message.get("id").and_then(Value::as_str) {
                 Some(id) if id != problem.id => Err(Broken::OutOfOrder {

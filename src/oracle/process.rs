@@ -3,16 +3,18 @@
 //! After this file the reader knows how a program that hangs, ends, floods or answers out of order is noticed. Reading and writing
 //! happen in threads of their own, so that nothing the program does can block the check.
 
+use super::pipes::{Line, keep_last, read_lines};
 use super::problem::ProblemFile;
 use super::subject::{Answer, Broken, ECHO, Ready, Subject};
 use super::trace::{Dimensions, Trace, read_json};
+use crate::file::LONGEST_LINE;
 use crate::file::shortened;
-use crate::file::{LONGEST_LINE, read_line};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
-use std::io::{BufReader, ErrorKind, Read, Write};
+use std::io::Write;
 use std::process::{Child, Command, ExitStatus, Stdio};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, SyncSender, channel, sync_channel};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel, sync_channel};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
@@ -31,9 +33,6 @@ const REMARKS: usize = 100;
 /// The time that a program has to end after `stop`.
 const LAST_MOMENTS: Duration = Duration::from_secs(2);
 
-/// So much of what a program writes to standard error is kept for a report.
-const STDERR_KEPT: usize = 1000;
-
 /// A process under test.
 pub struct Process {
     command: Vec<String>,
@@ -50,14 +49,12 @@ struct Running {
     lines: Receiver<Line>,
     requests: Sender<String>,
     stderr: Arc<Mutex<String>>,
+    /// Bytes that have arrived and are in no line yet.
+    unfinished: Arc<AtomicUsize>,
+    /// The last line since the last message that is none.
+    passed_over: Option<String>,
     has_spoken: bool,
-}
-
-/// What the reading thread found.
-enum Line {
-    Text(String),
-    TooLong,
-    NotText,
+    has_answered: bool,
 }
 
 impl Process {
@@ -116,12 +113,21 @@ impl Process {
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()
-            .map_err(|error| Broken::NotStarted(format!("`{program}` cannot be started: {error}")))?;
+            .map_err(|error| {
+                let hint = if program.contains(' ') && arguments.is_empty() {
+                    "; a program and its arguments are words of their own, without quotes around them all"
+                } else {
+                    ""
+                };
+                Broken::NotStarted(format!("`{program}` cannot be started: {error}{hint}"))
+            })?;
         let (line_sender, lines) = sync_channel(WAITING);
         let (requests, request_receiver) = channel::<String>();
         let stderr = Arc::new(Mutex::new(String::new()));
+        let unfinished = Arc::new(AtomicUsize::new(0));
         if let Some(stdout) = child.stdout.take() {
-            std::thread::spawn(move || read_lines(stdout, &line_sender));
+            let unfinished = Arc::clone(&unfinished);
+            std::thread::spawn(move || read_lines(stdout, &line_sender, &unfinished));
         }
         if let Some(mut stdin) = child.stdin.take() {
             std::thread::spawn(move || {
@@ -141,7 +147,10 @@ impl Process {
             lines,
             requests,
             stderr,
+            unfinished,
+            passed_over: None,
             has_spoken: false,
+            has_answered: false,
         });
         Ok(())
     }
@@ -189,16 +198,17 @@ impl Process {
             match line {
                 Ok(Line::Text(line)) => {
                     running.has_spoken = true;
-                    if !line.trim_start().starts_with('{') {
+                    // Some writers mark their text as UTF-8.
+                    let text = line.strip_prefix('\u{feff}').unwrap_or(&line);
+                    if !text.trim_start().starts_with('{') {
+                        running.passed_over = Some(beginning(text)).filter(|line| !line.is_empty());
                         continue;
                     }
-                    match read_json(&line) {
-                        Ok(message) => return Ok(message),
-                        Err(reason) => {
-                            let line = beginning(&line);
-                            return Err(Broken::Garbage { line, reason });
-                        }
-                    }
+                    running.passed_over = None;
+                    return read_json(text).map_err(|error| Broken::Garbage {
+                        line: error.around.trim_end().to_owned(),
+                        reason: error.reason,
+                    });
                 }
                 Ok(Line::TooLong) => {
                     break Broken::Garbage {
@@ -213,14 +223,10 @@ impl Process {
                     };
                 }
                 Err(RecvTimeoutError::Timeout) => {
-                    let hint = if running.has_spoken {
-                        ""
-                    } else {
-                        "; nothing has arrived at all: does the program flush its output after every line?"
-                    };
+                    let is_flooded = left.is_zero();
                     break Broken::TimedOut {
                         seconds: limit.as_secs(),
-                        hint: hint.into(),
+                        hint: if is_flooded { String::new() } else { running.hint() },
                     };
                 }
                 Err(RecvTimeoutError::Disconnected) => break crashed(running),
@@ -235,6 +241,16 @@ impl Process {
             let _ = running.child.kill();
             let _ = running.child.wait();
         }
+    }
+
+    /// Asks a problem.
+    fn ask(&mut self, problem: &ProblemFile) -> Result<Answer, Broken> {
+        self.send(&json!({ "type": "run", "problem": problem }));
+        let answer = self.answer(problem);
+        if let Some(running) = &mut self.running {
+            running.has_answered |= answer.is_ok();
+        }
+        answer
     }
 
     /// The answer to a problem; answers to problems that were asked before are remarked upon and passed over.
@@ -258,6 +274,22 @@ impl Process {
     }
 }
 
+impl Running {
+    /// What may be why no message came.
+    fn hint(&self) -> String {
+        let unfinished = self.unfinished.load(Ordering::Relaxed);
+        match &self.passed_over {
+            Some(line) if line.contains('\0') => "; what has arrived is UTF-16, and messages are UTF-8".to_owned(),
+            _ if unfinished > 0 => {
+                format!("; {unfinished} bytes without a newline have arrived, and every message ends with one")
+            }
+            Some(line) => format!("; a line that does not begin with `{{` was passed over: {line}"),
+            None if self.has_spoken => String::new(),
+            None => "; nothing has arrived at all: does the program flush its output after every line?".to_owned(),
+        }
+    }
+}
+
 impl Subject for Process {
     fn start(&mut self) -> Result<Ready, Broken> {
         self.launch()
@@ -270,8 +302,18 @@ impl Subject for Process {
             return Answer::Broken(broken);
         }
         self.asked.insert(problem.id.clone());
-        self.send(&json!({ "type": "run", "problem": problem }));
-        self.answer(problem).unwrap_or_else(Answer::Broken)
+        let has_answered = self.running.as_ref().is_some_and(|running| running.has_answered);
+        let is_over = |broken: &Broken| matches!(broken, Broken::Crashed { status, .. } if *status == in_order());
+        match self.ask(problem) {
+            Err(broken) if has_answered && is_over(&broken) => {
+                let sentence =
+                    "ended after an answer, in order, and was started again; it is meant to answer until `stop`";
+                remark(&mut self.remarks, sentence.to_owned());
+                self.launch().and_then(|_| self.ask(problem))
+            }
+            answer => answer,
+        }
+        .unwrap_or_else(Answer::Broken)
     }
 
     fn stop(&mut self) -> Vec<String> {
@@ -364,50 +406,16 @@ fn error_of(value: Option<&Value>) -> Option<String> {
     }
 }
 
-fn read_lines(stdout: impl Read, lines: &SyncSender<Line>) {
-    let mut reader = BufReader::new(stdout);
-    loop {
-        let line = match read_line(&mut reader) {
-            Ok(Some(bytes)) => String::from_utf8(bytes).map_or_else(|error| not_text(error.as_bytes()), Line::Text),
-            Err(error) if error.kind() == ErrorKind::FileTooLarge => Line::TooLong,
-            Ok(None) | Err(_) => return,
-        };
-        if lines.send(line).is_err() {
-            return;
-        }
-    }
-}
-
-/// A line that is not UTF-8: a message that cannot be read, or a line that is passed over in any encoding.
-fn not_text(bytes: &[u8]) -> Line {
-    if bytes.trim_ascii_start().starts_with(b"{") {
-        Line::NotText
-    } else {
-        Line::Text(String::from_utf8_lossy(bytes).into_owned())
-    }
-}
-
-/// Keeps the last part of what a program writes to standard error.
-fn keep_last(mut pipe: impl Read, kept: &Mutex<String>) {
-    let mut buffer = [0; 4096];
-    while let Ok(count @ 1..) = pipe.read(&mut buffer) {
-        let Ok(mut kept) = kept.lock() else { return };
-        kept.push_str(&String::from_utf8_lossy(&buffer[..count]));
-        if kept.len() > STDERR_KEPT {
-            let mut start = kept.len() - STDERR_KEPT;
-            while !kept.is_char_boundary(start) {
-                start += 1;
-            }
-            kept.drain(..start);
-        }
-    }
-}
-
 /// A remark, once, as long as there are not too many.
 fn remark(remarks: &mut Vec<String>, sentence: String) {
     if remarks.len() < REMARKS && !remarks.contains(&sentence) {
         remarks.push(sentence);
     }
+}
+
+/// The status of a process that has ended in order.
+fn in_order() -> String {
+    ExitStatus::default().to_string()
 }
 
 /// How a process ended, if it does in time.

@@ -4,6 +4,8 @@
 //! programs are read: a scalar for a 1 × 1 matrix, an object for a list of one, any nesting with the right count of numbers.
 
 use super::invalid::{Class, Invalid};
+use super::json::is_not_finite;
+pub use super::json::{NotJson, read_json};
 use crate::imm::Quantity;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
@@ -386,12 +388,6 @@ fn flatten(value: &Value, place: &str, numbers: &mut Vec<f64>) -> Result<(), Inv
     Ok(())
 }
 
-/// Whether a word is one that programs write for what is not finite.
-pub(super) fn is_not_finite(word: &str) -> bool {
-    let word = word.trim_start_matches(['-', '+']).to_ascii_lowercase();
-    ["nan", "inf", "infinity"].contains(&word.as_str())
-}
-
 /// A list, or one value as a list of one.
 fn as_list(value: &Value) -> Vec<&Value> {
     match value {
@@ -416,43 +412,4 @@ fn whole_number(value: &Value) -> Option<usize> {
         reason = "a whole number below 10⁹"
     )]
     is_whole.then_some(number as usize)
-}
-
-/// Reads JSON in which NaN, Infinity and −Infinity may stand for numbers, as several writers have it.
-///
-/// # Errors
-///
-/// The reason, with line and column.
-pub fn read_json(text: &str) -> Result<Value, String> {
-    serde_json::from_str(&quote_not_finite(text)).map_err(|error| error.to_string())
-}
-
-/// Puts the words for what is not finite into quotes where they stand outside of strings.
-fn quote_not_finite(text: &str) -> String {
-    let mut quoted = String::with_capacity(text.len());
-    let mut rest = text;
-    let mut in_string = false;
-    while let Some(character) = rest.chars().next() {
-        if in_string && character == '\\' {
-            let end = rest.char_indices().nth(2).map_or(rest.len(), |(end, _)| end);
-            quoted.push_str(&rest[..end]);
-            rest = &rest[end..];
-            continue;
-        }
-        in_string ^= character == '"';
-        let word_end = rest
-            .find(|c: char| !c.is_ascii_alphabetic() && c != '-' && c != '+')
-            .unwrap_or(rest.len());
-        if word_end > 0 {
-            // A word as a whole: a long one letter by letter would take for ever.
-            let word = &rest[..word_end];
-            let quote = if !in_string && is_not_finite(word) { "\"" } else { "" };
-            quoted.extend([quote, word, quote]);
-            rest = &rest[word_end..];
-            continue;
-        }
-        quoted.push(character);
-        rest = &rest[character.len_utf8()..];
-    }
-    quoted
 }
