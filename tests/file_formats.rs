@@ -41,6 +41,41 @@ fn the_problems_that_are_spoilt_below_are_right() {
     }
 }
 
+/// A first file lacks more than one.
+#[test]
+fn keys_that_are_missing_together_are_named_together() {
+    let lacking = |keys: &[&str]| {
+        let mut file = value_of(LINEAR);
+        for key in keys {
+            file.as_object_mut().unwrap().shift_remove(*key).unwrap();
+        }
+        refusal(&file).to_string()
+    };
+    assert_eq!(
+        lacking(&["R", "transition", "measurements"]),
+        "problem: lacks the keys `R`, `transition`, `measurements`"
+    );
+    assert_eq!(lacking(&["R", "units"]), "problem: lacks the keys `R`, `units`");
+    assert_eq!(lacking(&["flags", "units"]), "problem: lacks the keys `flags`, `units`");
+    let mut file = value_of(LINEAR);
+    file["format"] = json!("immaculate-problem/2");
+    for key in ["R", "units", "filter"] {
+        file.as_object_mut().unwrap().shift_remove(key).unwrap();
+    }
+    assert_eq!(refusal(&file).to_string(), "problem: lacks the keys `R`, `filter`");
+}
+
+#[test]
+fn what_is_no_number_in_json_is_told_what_to_write() {
+    for word in ["NaN", "Infinity", "-Infinity"] {
+        let text = text_of(LINEAR).replacen("29.7", word, 1);
+        let invalid = ProblemFile::read(&text).unwrap_err();
+        assert!(invalid.reason.contains("a missing measurement is null"), "{invalid}");
+    }
+    let text = text_of(LINEAR).replacen("29.7", "nil", 1);
+    assert!(!ProblemFile::read(&text).unwrap_err().reason.contains("null"));
+}
+
 /// Exact, over every key of every object of five files.
 #[test]
 fn every_key_that_is_missing_is_named_with_its_place() {
@@ -469,6 +504,14 @@ fn wrong_values() -> Vec<Defect> {
         ),
         (
             LINEAR,
+            "/transition/0",
+            json!([f64::from(0.8f32), f64::from(0.2f32)]),
+            NotAProbability,
+            "problem.transition[0]",
+            "it looks like single precision",
+        ),
+        (
+            LINEAR,
             "/transition/1",
             json!([-0.5, 1.5]),
             NotAProbability,
@@ -497,7 +540,7 @@ fn wrong_values() -> Vec<Defect> {
             square(121.0, 29.7, 29.8, 81.0),
             NotSymmetric,
             "problem.R",
-            symmetric,
+            ": [0][1] is 29.7, [1][0] is 29.8, 1.0e-1 apart; write the same number in both",
         ),
         (
             LINEAR,

@@ -63,7 +63,7 @@ pub(super) fn is_not_finite(word: &str) -> bool {
 }
 
 /// Puts the words for what is not finite into quotes where they stand outside of strings.
-fn quote_not_finite(text: &str) -> String {
+pub(super) fn quote_not_finite(text: &str) -> String {
     let mut quoted = String::with_capacity(text.len());
     let mut rest = text;
     let mut in_string = false;

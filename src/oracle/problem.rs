@@ -415,8 +415,17 @@ fn check_keys(text: &str) -> Result<(), Invalid> {
         ("units", keys.units),
         ("conventions", keys.conventions),
     ];
-    match all.into_iter().find(|(_, value)| value.is_none()) {
-        Some((key, _)) => Err(Invalid::new(Class::Format, format!("problem.{key}"), "is missing")),
-        None => Ok(()),
+    let missing: Vec<&str> = all
+        .into_iter()
+        .filter(|(_, value)| value.is_none())
+        .map(|(key, _)| key)
+        .collect();
+    match missing[..] {
+        [] => Ok(()),
+        [key] => Err(Invalid::new(Class::Format, format!("problem.{key}"), "is missing")),
+        _ => {
+            let reason = format!("lacks the keys `{}`", missing.join("`, `"));
+            Err(Invalid::new(Class::Format, "problem", reason))
+        }
     }
 }

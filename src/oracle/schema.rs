@@ -43,7 +43,7 @@ pub fn of_problems() -> Value {
 }
 
 /// The keys that may be absent in format 2 only.
-const KEYS_OF_FORMAT_1: [&str; 4] = ["about", "flags", "units", "conventions"];
+pub(super) const KEYS_OF_FORMAT_1: [&str; 4] = ["about", "flags", "units", "conventions"];
 
 /// A problem of one filter may have what its mode has at the top, and its estimate alone.
 fn with_short_form(schema: &mut Value, one_motion: &Value) {

@@ -4,10 +4,12 @@
 //! that have a `kind` must know the kind before it can read the rest, and forgets the places on the way; here they are found again.
 
 use super::invalid::{Class, Invalid};
+use super::json::quote_not_finite;
 use super::models::{ComponentFile, ModelParameters};
-use super::problem::{FixedGainFile, Rows};
+use super::problem::{FORMAT, FixedGainFile, ProblemFile, Rows};
+use super::schema::KEYS_OF_FORMAT_1;
 use serde::de::DeserializeOwned;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 /// Reads a value for nothing but its error: the place inside the value, and the sentence.
 type Attempt = fn(&Value) -> Result<(), (String, String)>;
@@ -82,7 +84,34 @@ pub(super) fn reason(text: &str, place: &str, sentence: &str) -> Invalid {
             return invalid;
         }
     }
+    let is_no_number = ["expected value", "invalid number"]
+        .iter()
+        .any(|start| sentence.starts_with(start));
+    if is_no_number && quote_not_finite(text) != text {
+        let reason = format!("{sentence}: NaN and infinities are no JSON; a missing measurement is null");
+        return Invalid::new(Class::Format, place, reason);
+    }
+    let missing = if place == "problem" { missing(text) } else { Vec::new() };
+    if missing.len() > 1 && sentence.starts_with("missing field") {
+        let reason = format!("lacks the keys {}", missing.join(", "));
+        return Invalid::new(Class::Format, place, reason);
+    }
     at(place, sentence)
+}
+
+/// The keys that a problem must have and has not.
+fn missing(text: &str) -> Vec<String> {
+    let file: Value = serde_json::from_str(text).unwrap_or_default();
+    let of_format_1: &[&str] = if file["format"] == FORMAT {
+        &KEYS_OF_FORMAT_1
+    } else {
+        &[]
+    };
+    let schema = json!(schemars::schema_for!(ProblemFile));
+    let required = schema["required"].as_array().into_iter().flatten();
+    let required = required.filter_map(Value::as_str).chain(of_format_1.iter().copied());
+    let missing = required.filter(|key| file.get(key).is_none());
+    missing.map(|key| format!("`{key}`")).collect()
 }
 
 /// What a sentence of the JSON reader says of a place.
@@ -116,7 +145,7 @@ fn joined(outer: &str, inner: &str) -> String {
 }
 
 /// The value at a place of a file, such as `problem.sensors[0].measurement`.
-fn value_at<'a>(file: &'a Value, place: &str) -> Option<&'a Value> {
+pub(super) fn value_at<'a>(file: &'a Value, place: &str) -> Option<&'a Value> {
     let pointer = place.strip_prefix("problem")?.replace(['.', '['], "/").replace(']', "");
     file.pointer(&pointer)
 }

@@ -9,10 +9,13 @@ use super::problem::{
     RULES, Rows, SensorFile,
 };
 use super::trace::Dimensions;
+use super::unreadable::value_at;
 use crate::file::shortened;
 use crate::imm::{InvalidProblem, Needs};
 use crate::model::Conversion;
 use crate::model::nearest::nearest;
+use serde::Deserialize;
+use serde_json::json;
 
 impl ProblemFile {
     /// Checks all that the filter relies on.
@@ -44,7 +47,7 @@ impl ProblemFile {
         setup
             .problem
             .check(&setup.initial)
-            .map_err(|error| of_problem(&error))?;
+            .map_err(|error| self.with_entries(of_problem(&error)))?;
         for (step, problem) in &setup.changes {
             problem.check(&setup.initial).map_err(|error| Invalid {
                 place: format!("problem.measurements[{}]", step - 1),
@@ -56,6 +59,27 @@ impl ProblemFile {
             })?;
         }
         Ok(())
+    }
+
+    /// Of a matrix that is not symmetric, the two entries that are farthest apart.
+    fn with_entries(&self, invalid: Invalid) -> Invalid {
+        let rows = || Rows::deserialize(value_at(&json!(self), &invalid.place)?).ok();
+        let Some(rows) = rows().filter(|_| invalid.class == Class::NotSymmetric) else {
+            return invalid;
+        };
+        let below = (0..rows.len()).flat_map(|row| (0..row).map(move |column| (row, column)));
+        let apart = |(row, column): &(usize, usize)| (rows[*row][*column] - rows[*column][*row]).abs();
+        let Some((row, column)) = below.max_by(|a, b| apart(a).total_cmp(&apart(b))) else {
+            return invalid;
+        };
+        let reason = format!(
+            "{}: [{column}][{row}] is {}, [{row}][{column}] is {}, {:.1e} apart; write the same number in both",
+            invalid.reason,
+            rows[column][row],
+            rows[row][column],
+            apart(&(row, column))
+        );
+        Invalid { reason, ..invalid }
     }
 
     fn check_conventions(&self) -> Result<(), Invalid> {
@@ -365,12 +389,24 @@ fn of_problem(error: &InvalidProblem) -> Invalid {
         | InvalidProblem::CorrelatedNoise => Class::Unknown,
         InvalidProblem::CovarianceGiven { .. } => Class::Format,
     };
+    let hint = match error {
+        InvalidProblem::NotNormalised { sum, .. } if is_single(sum) => {
+            "; it looks like single precision: write the decimals as they are meant"
+        }
+        _ => "",
+    };
     // The sentence starts with the field in backquotes.
-    let sentence = error.to_string();
+    let sentence = format!("{error}{hint}");
     match sentence.strip_prefix('`').and_then(|rest| rest.split_once('`')) {
         Some((field, rest)) => Invalid::new(class, format!("problem.{field}"), rest.trim_start()),
         None => Invalid::new(class, "problem", sentence),
     }
+}
+
+/// Whether a sum of probabilities is one but for rounding in single precision, by a unit in the last place of 1 at most.
+fn is_single(sum: &str) -> bool {
+    let excess = sum.parse::<f64>().map_or(f64::NAN, |sum| (sum - 1.0).abs());
+    (1e-10..=f64::from(f32::EPSILON)).contains(&excess)
 }
 
 pub(super) fn check_length(field: &str, found: usize, expected: usize) -> Result<(), Invalid> {
