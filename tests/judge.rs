@@ -333,6 +333,35 @@ fn an_explanation_leaves_no_error_of_more_than_a_hundred_noises() {
     assert!(scene.case().is_explained_by(&[], &passed).unwrap());
 }
 
+/// The triangles of a covariance that a prediction is made from are apart by so many units, and so is the noise of the prediction: where
+/// that is as large as a unit it would excuse anything, and a form is no excuse. Nor is it one for what is not finite.
+#[test]
+fn a_form_excuses_rounding_and_nothing_that_runs_away() {
+    let case = published("step.n4-m2.two-modes");
+    let explained = |apart: f64, variants: &[&str], is_finite: bool| {
+        let mut scene = Scene::of(&case.problem, certified(case));
+        let of = |trace: &Trace, quantity| trace.get(1, quantity, 0).unwrap().clone();
+        let mut mixed = of(&scene.shown, Q::MixedCovariance);
+        mixed[1] += apart * of(&scene.reference.scale, Q::MixedCovariance)[1];
+        scene.shown.set(1, Q::MixedCovariance, 0, mixed);
+        let mut predicted = of(&scene.shown, Q::PredictedCovariance);
+        predicted[0] += 3.0 * apart * of(&scene.reference.scale, Q::PredictedCovariance)[0];
+        if !is_finite {
+            predicted[0] = f64::NAN;
+        }
+        scene.shown.set(1, Q::PredictedCovariance, 0, predicted);
+        let nothing = BTreeSet::new();
+        scene
+            .case()
+            .is_quantity_explained_by(variants, Q::PredictedCovariance, &nothing)
+            .unwrap()
+    };
+    let form = "prediction-not-mirrored";
+    assert!(explained(1e-9, &[], true) && explained(1e-9, &[form], true));
+    assert!(explained(0.1, &[], true) && !explained(0.1, &[form], true));
+    assert!(!explained(1e-9, &[form], false));
+}
+
 #[test]
 fn a_quantity_is_explained_for_itself() {
     let mut scene = Scene::new();

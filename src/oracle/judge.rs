@@ -17,6 +17,7 @@ pub use super::reference::Reference;
 use super::reference::{Run, is_drowned};
 use super::subject::Precision;
 use super::trace::Trace;
+use super::variant::{self, Kind};
 use crate::imm::Needs;
 use crate::imm::Quantity;
 use crate::imm::record::Input;
@@ -278,8 +279,48 @@ impl Case<'_> {
     fn is_explained(&self, variants: &[&str], is_asked: &dyn Fn(&Place) -> bool) -> Result<bool, Invalid> {
         let run = self.run(variants);
         let (own, _) = run.values()?;
-        let is_within = |limit, runs| Ok(self.is_within(limit, &own, &run.noise(&own, runs)?, is_asked));
+        let is_asked = |place: &Place| is_asked(place) && self.shown.get(place.0, place.1, place.2).is_some();
+        if self.has_no_answer(&is_asked)? {
+            return Ok(false);
+        }
+        let is_form = |id: &&str| variant::find(id).is_some_and(|variant| variant.kind == Kind::Form);
+        let has_form = variants.iter().any(is_form);
+        let is_within = |limit, runs| {
+            let noise = run.noise(&own, runs)?;
+            let runs_away = |place: Place| has_form && is_asked(&place) && self.runs_away(place, &own, &noise);
+            Ok(self.is_within(limit, &own, &noise, &is_asked) && !self.shown.all_places().any(runs_away))
+        };
         Ok(is_within(LIMIT, 0)? || is_within(FAR, 2)? && is_within(LIMIT, noise::RUNS)?)
+    }
+
+    /// Whether nothing needs an explanation but values that are not finite where the equations as they are have no answer either: whatever
+    /// leaves these as they are would explain them.
+    fn has_no_answer(&self, is_asked: &dyn Fn(&Place) -> bool) -> Result<bool, Invalid> {
+        let is_gap = |place: &Place| is_asked(place) && self.shown.finite(place.0, place.1, place.2).is_none();
+        if !self.shown.all_places().any(|place| is_gap(&place)) {
+            return Ok(false);
+        }
+        let run = self.run(&[]);
+        let (own, _) = run.values()?;
+        let has_answer = |place: &Place| own.finite(place.0, place.1, place.2).is_some();
+        if self
+            .shown
+            .all_places()
+            .all(|place| !is_gap(&place) || has_answer(&place))
+        {
+            return Ok(false);
+        }
+        Ok(self.is_within(LIMIT, &own, &run.noise(&own, noise::RUNS)?, is_asked))
+    }
+
+    /// Whether a shown value is beyond what a form may excuse, which is rounding: it is not finite; or the form's noise is as large as the
+    /// value's unit, so that it would excuse anything, and the value is off by more than rounding that is not ([`Reference::is_drowned`]).
+    fn runs_away(&self, place: Place, own: &Trace, noise: &Trace) -> bool {
+        self.shown.finite(place.0, place.1, place.2).is_none()
+            || is_drowned(place, noise, &self.reference.scale)
+                && self
+                    .error(place, own, noise)
+                    .is_some_and(|error| LIMIT * error.size > 1.0)
     }
 
     /// Whether the equations with these variants are so far off in the first steps that no noise can be meant: those up to the first fault,
