@@ -270,6 +270,7 @@ fn the_own_filter_has_full_marks_on_every_case() {
     assert_eq!(report.cases.len(), case::all().unwrap().len());
     assert!(!report.is_wrong());
     assert_eq!(report.diagnosis, Diagnosis::Nothing);
+    assert_eq!(report.observations, []);
 }
 
 /// What a level of answer says of a mistake.

@@ -16,6 +16,7 @@ use immaculate::oracle::diagnose::Diagnosis;
 use immaculate::oracle::folder::Folder;
 use immaculate::oracle::invalid::Class;
 use immaculate::oracle::judge::Finding;
+use immaculate::oracle::observation::Observation;
 use immaculate::oracle::problem::ProblemFile;
 use immaculate::oracle::process::{Process, read_answer};
 use immaculate::oracle::subject::{Answer, Broken, Level, Planted, Precision, Ready, Subject};
@@ -337,6 +338,41 @@ fn a_program_that_floods_is_stopped_in_time() {
             report.remarks
         );
     }
+}
+
+/// A script that keeps a count: what it answers the second time is another thing.
+#[test]
+fn a_program_is_asked_its_first_case_again_in_the_same_process() {
+    let answers = Answers::new("again");
+    let cat = answers.cat("update.kalman");
+    for (again, is_wrong) in [
+        (cat.as_str(), false),
+        ("echo '{\"id\":\"update.kalman\",\"steps\":[]}'", true),
+    ] {
+        let once = format!("if [ $asked ]; then {again}; else asked=1; {cat}; fi");
+        let report = verdict(&answers.script(&[("update.kalman", &once)]));
+        assert_others_are_right(&report, "");
+        assert_eq!(
+            (report.is_wrong(), report.observations.len()),
+            (is_wrong, usize::from(is_wrong))
+        );
+    }
+}
+
+/// What is wrong behind another problem is right in a process that has just been started.
+#[test]
+fn a_wrong_case_is_asked_alone_in_a_process_of_its_own() {
+    let answers = Answers::new("alone");
+    let cat = answers.cat("update.simplex-5");
+    // The chain's 0.64 is 0.74 where anything was asked before.
+    let other = format!("if [ $kept ]; then {cat} | sed 's/0\\.[0-9]/0.7/'; else {cat}; fi");
+    let first = format!("kept=1; {}", answers.cat("update.kalman"));
+    let report = verdict(&answers.script(&[("update.kalman", &first), ("update.simplex-5", &other)]));
+    assert_eq!(of(&report, "update.simplex-5").outcome, Outcome::Wrong);
+    let alone = Observation::RightAlone {
+        ids: vec!["update.simplex-5".into()],
+    };
+    assert_eq!(report.observations, [alone]);
 }
 
 // Lines that are no answers

@@ -16,7 +16,9 @@ use immaculate::oracle::diagnose::{Diagnosis, Share};
 use immaculate::oracle::formula::{Formulas, Found};
 use immaculate::oracle::invalid::{Class, Invalid};
 use immaculate::oracle::judge::{Finding, Judged, Judgement, OwnError};
+use immaculate::oracle::observation::{Discrepancy, Observation, SingleInput};
 use immaculate::oracle::problem::FilterFile;
+use immaculate::oracle::run::Triangle;
 use immaculate::oracle::subject::{Broken, Precision, Ready};
 use immaculate::oracle::trace::{Dimensions, Trace};
 use immaculate::oracle::variant::{self, Variant};
@@ -69,6 +71,7 @@ fn a_verdict_in_which_all_is_right() {
             // Where nothing was judged, nothing is said of what was never shown.
             hidden: if echo.is_none() { vec![Gain] } else { Vec::new() },
             not_asked: Vec::new(),
+            observations: Vec::new(),
             remarks: Vec::new(),
             ..of_every_outcome()
         };
@@ -122,6 +125,7 @@ fn every_kind_of_diagnosis() {
         let report = Report {
             cases: vec![wrong("a", vec![fault(MixedCovariance, 0)])],
             diagnosis,
+            observations: Vec::new(),
             ..of_every_outcome()
         };
         let json = report::check_json::json(&report);
@@ -137,6 +141,7 @@ fn a_fault_in_every_quantity() {
         // Three cases in which the equations have no answer, which are all named.
         cases: vec![wrong("a", faults), wrong("b", Vec::new()), wrong("c", Vec::new())],
         diagnosis: Diagnosis::Nothing,
+        observations: Vec::new(),
         ..of_every_outcome()
     };
     insta::assert_snapshot!("verdict_faults", report::check::text(&report));
@@ -222,8 +227,65 @@ fn of_every_outcome() -> Report {
             .to_vec(),
         diagnosis: Diagnosis::One(vec![found("mixed-spread-omitted")]),
         hidden: vec![Gain, LogLikelihood],
+        observations: of_every_kind(),
         remarks: vec!["the program wrote to standard output what is no message".into()],
     }
+}
+
+/// Whatever may be seen in answers as a whole.
+fn of_every_kind() -> Vec<Observation> {
+    let difference = |again| Discrepancy {
+        place: (2, MixedCovariance, 1),
+        index: 3,
+        first: Some(0.25),
+        again,
+    };
+    let differ = |difference, is_rounding| Observation::AnswersDiffer {
+        id: "right".into(),
+        difference,
+        is_rounding,
+    };
+    vec![
+        differ(Some(difference(Some(0.5))), false),
+        differ(Some(difference(None)), false),
+        differ(None, false),
+        differ(Some(difference(Some(0.25f64.next_up()))), true),
+        Observation::RightAlone {
+            ids: vec!["wrong".into(), "wrong-too".into()],
+        },
+        Observation::FewDigits { digits: 6 },
+        Observation::FewDigits { digits: 9 },
+        Observation::FewDecimals { decimals: 4 },
+        Observation::SinglePrecision,
+        Observation::SingleInput {
+            input: SingleInput::Everything,
+        },
+        Observation::SingleInput {
+            input: SingleInput::Estimates,
+        },
+        Observation::StepsAlike {
+            id: "wrong".into(),
+            step: Some(2),
+        },
+        Observation::StepsAlike {
+            id: "wrong".into(),
+            step: None,
+        },
+        Observation::SymmetryLost {
+            ids: vec!["wrong".into(), "wrong-too".into()],
+            covariance: (MixedCovariance, 1),
+            first: (1, 7e-16),
+            most: (40, 3000.0),
+        },
+        Observation::OneTriangle {
+            triangle: Triangle::Lower,
+            quantities: vec![MixedCovariance],
+        },
+        Observation::ShownAs {
+            quantity: LogLikelihood,
+            way: "its negative",
+        },
+    ]
 }
 
 /// What explains some cases, and the number of cases that nothing explains.

@@ -3,13 +3,14 @@
 //! After this file the reader knows how a verdict over all cases comes about: the echo first, then each case that the program has the
 //! filter for, then, if anything is faulty, the search for what was done.
 
+use super::again::ask_again;
 use super::behaviour::{NotAsked, Unasked};
 use super::case::{self, BadCase, Case, Expected};
 use super::certify::certified_as_far_as_it_goes;
-use super::diagnose::{Evidence, diagnose};
-use super::evidence::{Beginning, evidence_of, explain_first_faults};
+use super::evidence::{Answered, explain, explain_first_faults};
 use super::invalid::Invalid;
-use super::judge::{self, Finding, Judgement, Reference};
+use super::judge::{self, Reference};
+use super::observation::observe;
 use super::problem::{FORMAT, FORMAT_2, ProblemFile, kinds};
 use super::subject::{Answer, Broken, Precision, Ready, Subject, echoed};
 use super::trace::{Dimensions, Trace};
@@ -295,43 +296,27 @@ fn ask(subject: &mut dyn Subject, questions: &[Question], progress: &dyn Fn(&str
         let problem = question.problem();
         let answer = subject.run(problem);
         let (report, shown) = judge_answer(question, answer, &ready, &conventions)?;
-        if let Some(shown) = shown {
-            answered.push((cases.len(), problem, shown));
+        if let Some((shown, reference)) = shown {
+            answered.push(Answered {
+                index: cases.len(),
+                problem,
+                shown,
+                reference,
+            });
         }
         cases.push(report);
         progress(&problem.id);
     }
-    let remarks = subject.stop();
-    let beginnings: Vec<Beginning> = answered
-        .iter()
-        .filter_map(|(index, problem, (shown, reference))| {
-            Beginning::of(*index, &cases[*index], problem, shown, reference)
-        })
-        .collect();
-    let mut evidence: Vec<Evidence> = answered
-        .iter()
-        .map(|(index, problem, (shown, reference))| evidence_of(&cases[*index], problem, shown, reference, &ready))
-        .collect();
-    let pieces: Vec<(usize, &Evidence)> = answered.iter().map(|(index, ..)| *index).zip(&evidence).collect();
-    explain_first_faults(&mut cases, &pieces, &conventions)?;
-    for beginning in &beginnings {
-        let (
-            case,
-            Beginning {
-                problem,
-                shown,
-                reference,
-                ..
-            },
-        ) = (&cases[beginning.case], beginning);
-        let mut of_beginning = evidence_of(case, problem, shown, reference, &ready);
-        of_beginning.is_beginning = true;
-        // What a mistake takes from the step after it is not there at the end.
-        of_beginning.passed.extend(shown.places(problem.measurements.len()));
-        evidence.push(of_beginning);
-    }
-    let diagnosis = diagnose(&evidence, &conventions)?;
-    let traces: Vec<&Trace> = answered.iter().map(|(_, _, (shown, _))| shown).collect();
+    let is_right = |index: usize, answer: Answer| {
+        let (report, _) = judge_answer(asked[index], answer, &ready, &conventions)?;
+        Ok(report.outcome == Outcome::Right)
+    };
+    let mut observations = observe(&answered, &cases, ready.precision, &conventions)?;
+    let (of_asking_again, remarks) = ask_again(subject, &answered, &cases, &is_right)?;
+    observations.extend(of_asking_again);
+    let diagnosis = explain(&answered, &cases, &ready, &conventions, &observations)?;
+    explain_first_faults(&mut cases, &answered, &ready, &conventions)?;
+    let traces: Vec<&Trace> = answered.iter().map(|answered| &answered.shown).collect();
     let hidden = never_shown(&asked, &traces);
     Ok(Report {
         echo: ready.echo.as_ref().map(|echo| *echo == echoed()),
@@ -340,6 +325,7 @@ fn ask(subject: &mut dyn Subject, questions: &[Question], progress: &dyn Fn(&str
         ready,
         cases,
         diagnosis,
+        observations,
         remarks,
     })
 }
@@ -411,8 +397,7 @@ fn judge_answer(
     }
     .judge(conventions)?;
     let is_drowned = error.is_some() && stops_where_noise_drowns(&shown, &reference);
-    summarise(&mut report, &judgement, error, is_drowned);
-    report.judgement = Some(judgement);
+    report.judged_as(judgement, error, is_drowned);
     Ok((report, Some((shown, reference))))
 }
 
@@ -464,31 +449,4 @@ fn stops_where_noise_drowns(shown: &Trace, reference: &Reference) -> bool {
     let steps = last.max(1)..=(last + 1).min(shown.dimensions.steps());
     let mut places = steps.flat_map(|step| shown.places(step));
     places.any(|place| reference.is_drowned(place))
-}
-
-/// Outcome, counts and digits from the judged values.
-fn summarise(report: &mut CaseReport, judgement: &Judgement, error: Option<String>, is_drowned: bool) {
-    let findings = || judgement.values.iter().map(|value| value.finding);
-    let decided = |finding: &Finding| matches!(finding, Finding::Right | Finding::Propagated) || finding.is_fault();
-    report.judged = findings().filter(decided).count();
-    report.digits = judgement
-        .values
-        .iter()
-        .filter(|value| value.finding == Finding::Right)
-        .map(|value| -libm::log10(value.error.max(f64::EPSILON / 2.0)))
-        .reduce(f64::min);
-    report.stopped.clone_from(&error);
-    report.outcome = if findings().any(Finding::is_fault) {
-        Outcome::Wrong
-    } else if let Some(reason) = error.filter(|_| !is_drowned) {
-        Outcome::Stopped { reason }
-    } else if is_drowned {
-        Outcome::CannotTell
-    } else if judgement.values.is_empty() {
-        Outcome::NothingShown
-    } else if report.judged == 0 {
-        Outcome::CannotTell
-    } else {
-        Outcome::Right
-    };
 }

@@ -147,6 +147,16 @@ pub fn diagnose(evidence: &[Evidence], conventions: &[&str]) -> Result<Diagnosis
     Ok(in_parts)
 }
 
+/// The same without pairs and parts, which take long: where the answers themselves say already what is wrong.
+///
+/// # Errors
+///
+/// [`Invalid`] for a problem that cannot be set up.
+pub(super) fn diagnose_quickly(evidence: &[Evidence], conventions: &[&str]) -> Result<Diagnosis, Invalid> {
+    let found = Search::new(evidence, conventions)?.quickly()?;
+    Ok(found.unwrap_or(Diagnosis::Nothing))
+}
+
 /// The evidence filter by filter; nothing where there is one filter only.
 fn by_filter(evidence: &[Evidence], conventions: &[&str]) -> Result<Vec<(String, Diagnosis)>, Invalid> {
     let name_of = |evidence: &Evidence| evidence.case.problem.kinds().join(" + ");

@@ -52,6 +52,10 @@ impl Subject for Folder {
     fn run(&mut self, problem: &ProblemFile) -> Answer {
         self.read(problem).unwrap_or_else(Answer::Broken)
     }
+
+    fn forgets_at_start(&self) -> bool {
+        false
+    }
 }
 
 impl Folder {

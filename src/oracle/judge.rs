@@ -185,6 +185,12 @@ impl Case<'_> {
         Some(compare(shown, expected, noise, scale, self.precision, &turn))
     }
 
+    /// Whether a shown value is as certified.
+    pub(super) fn is_right(&self, place: Place) -> bool {
+        let error = self.error(place, &self.reference.trace, &self.reference.noise);
+        error.is_some_and(|error| error.ratio <= LIMIT)
+    }
+
     /// Judges all shown values.
     ///
     /// # Errors

@@ -32,7 +32,8 @@
 //!
 //! [`judge`] compares each shown value with the certified one and, if it is off, with its own equation on the program's own earlier
 //! values: what these explain was inherited, and what they do not explain is a fault. [`variant`] is the catalogue of what can be done
-//! otherwise, and [`diagnose`] finds which of it was done. [`check`](mod@check) does all of this over all cases:
+//! otherwise, and [`diagnose`] finds which of it was done. [`observation`] is what is seen in the answers as a whole.
+//! [`check`](mod@check) does all of this over all cases:
 //!
 //! ```
 //! use immaculate::oracle::check::{Selection, check};
@@ -53,6 +54,8 @@
 //! # Ok::<(), immaculate::oracle::check::NotMade>(())
 //! ```
 
+mod again;
+mod alike;
 pub mod answer;
 pub mod behaviour;
 mod bound;
@@ -61,6 +64,7 @@ pub mod certify;
 pub mod check;
 pub mod csv;
 pub mod diagnose;
+mod digits;
 mod evidence;
 mod filter_file;
 pub mod flags;
@@ -71,6 +75,7 @@ mod json;
 pub mod judge;
 pub mod models;
 pub mod noise;
+pub mod observation;
 mod pipes;
 pub mod problem;
 pub mod process;
@@ -79,9 +84,12 @@ pub mod run;
 pub mod scale;
 pub mod schema;
 pub mod setup;
+mod shown_as;
 mod single;
+mod single_input;
 mod steps;
 pub mod subject;
+mod symmetry;
 pub mod trace;
 mod unreadable;
 pub mod variant;

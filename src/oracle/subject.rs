@@ -286,7 +286,7 @@ pub enum Broken {
 /// assert_eq!((report.cases[0].judged, report.cases[0].of), (1, 32)); // right in what it shows, silent on the rest
 /// ```
 pub trait Subject {
-    /// Introduces itself.
+    /// Introduces itself. It is called again to ask a case alone, and then nothing of earlier problems may be left.
     ///
     /// # Errors
     ///
@@ -299,6 +299,11 @@ pub trait Subject {
     /// Ends; what was strange on the way, a sentence each.
     fn stop(&mut self) -> Vec<String> {
         Vec::new()
+    }
+
+    /// Whether it can be started again after its end, and answers anew then. Answers that were written before are what they are.
+    fn forgets_at_start(&self) -> bool {
+        true
     }
 }
 

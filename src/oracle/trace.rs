@@ -388,6 +388,11 @@ fn flatten(value: &Value, place: &str, numbers: &mut Vec<f64>) -> Result<(), Inv
     Ok(())
 }
 
+/// Whether two numbers are the same as they were read: bit for bit, but that nothing is known of what is not finite.
+pub(super) fn same(a: f64, b: f64) -> bool {
+    a.to_bits() == b.to_bits() || !a.is_finite() && !b.is_finite()
+}
+
 /// A list, or one value as a list of one.
 fn as_list(value: &Value) -> Vec<&Value> {
     match value {

@@ -4,7 +4,8 @@
 
 use super::behaviour::{Behaviour, NotAsked};
 use super::diagnose::Diagnosis;
-use super::judge::{Judged, Judgement};
+use super::judge::{Finding, Judged, Judgement};
+use super::observation::Observation;
 use super::problem::{FilterFile, ProblemFile};
 use super::subject::{Broken, Ready};
 use super::trace::Dimensions;
@@ -109,6 +110,34 @@ impl CaseReport {
         }
     }
 
+    /// Takes in the judged values: outcome, counts and digits.
+    pub(super) fn judged_as(&mut self, judgement: Judgement, error: Option<String>, is_drowned: bool) {
+        let findings = || judgement.values.iter().map(|value| value.finding);
+        let decided = |finding: &Finding| matches!(finding, Finding::Right | Finding::Propagated) || finding.is_fault();
+        self.judged = findings().filter(decided).count();
+        self.digits = judgement
+            .values
+            .iter()
+            .filter(|value| value.finding == Finding::Right)
+            .map(|value| -libm::log10(value.error.max(f64::EPSILON / 2.0)))
+            .reduce(f64::min);
+        self.stopped.clone_from(&error);
+        self.outcome = if findings().any(Finding::is_fault) {
+            Outcome::Wrong
+        } else if let Some(reason) = error.filter(|_| !is_drowned) {
+            Outcome::Stopped { reason }
+        } else if is_drowned {
+            Outcome::CannotTell
+        } else if judgement.values.is_empty() {
+            Outcome::NothingShown
+        } else if self.judged == 0 {
+            Outcome::CannotTell
+        } else {
+            Outcome::Right
+        };
+        self.judgement = Some(judgement);
+    }
+
     /// The step of the first fault.
     pub(super) fn first_fault(&self) -> Option<usize> {
         let faults = self.judgement.iter().flat_map(Judgement::faults);
@@ -149,6 +178,8 @@ pub struct Report {
     pub diagnosis: Diagnosis,
     /// The quantities that were never shown.
     pub hidden: Vec<Quantity>,
+    /// What is seen in the answers as a whole.
+    pub observations: Vec<Observation>,
     /// What was strange on the way.
     pub remarks: Vec<String>,
 }
@@ -175,6 +206,7 @@ impl Report {
     pub fn is_wrong(&self) -> bool {
         let is_excused = self.is_excused();
         self.echo == Some(false)
+            || self.observations.iter().any(Observation::is_wrong)
             || self.cases.iter().any(|case| match case.outcome {
                 Outcome::Wrong => !is_excused,
                 ref outcome => outcome.is_wrong(),

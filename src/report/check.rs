@@ -5,6 +5,7 @@
 
 use super::behaviour::behaviours;
 use super::formula;
+use super::observation::observations;
 use super::{table, wrapped};
 use crate::imm::Quantity;
 use crate::oracle::behaviour::Unasked;
@@ -19,6 +20,7 @@ use std::fmt::Write;
 /// The whole report.
 pub fn text(report: &Report) -> String {
     let mut text = cases(report);
+    text.push_str(&observations(&report.observations));
     text.push_str(&faults(report));
     text.push_str(&failures(report));
     text.push_str(&diagnosis(&report.diagnosis));
@@ -445,7 +447,7 @@ fn summary(report: &Report) -> String {
 }
 
 /// A number with an exponent where it would be long without.
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     if value == 0.0 || (1e-4..1e9).contains(&value.abs()) {
         format!("{value}")
     } else {

@@ -53,6 +53,7 @@ pub fn json(report: &Report) -> Value {
         "not_asked": report.not_asked.iter().filter(|case| case.why != Unasked::Selection).count(),
         "never_shown": names(&report.hidden),
         "diagnosis": diagnosis_json(&report.diagnosis),
+        "observations": super::observation::json(&report.observations),
         "remarks": report.remarks,
         "cases": cases,
     })

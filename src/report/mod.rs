@@ -26,6 +26,7 @@ pub mod fit_error;
 mod formula;
 pub mod literal;
 pub mod long_term;
+mod observation;
 pub mod page;
 pub mod palette;
 pub mod path;
