@@ -10,6 +10,7 @@ use immaculate::number::RandomRounding;
 use immaculate::oracle::case::{self, Case as Published, Expected};
 use immaculate::oracle::check::{CaseReport, Outcome, Report, Selection, check};
 use immaculate::oracle::diagnose::{Diagnosis, Evidence, Share, diagnose};
+use immaculate::oracle::formula::Formulas;
 use immaculate::oracle::judge::{Case, Finding, Judged, Judgement, LIMIT, Place, Reference};
 use immaculate::oracle::noise::spread;
 use immaculate::oracle::problem::ProblemFile;
@@ -446,6 +447,51 @@ fn what_is_excused_is_what_a_form_or_a_convention_explains() {
     };
     assert!(report(Outcome::Wrong, by_filter(&[])).is_excused());
     assert!(!report(Outcome::Wrong, by_filter(&pair[1..])).is_excused());
+}
+
+/// Far from the origin raw moments lose digits, and a doubled noise is a mistake: the one is otherwise, the other a fault.
+#[test]
+fn what_a_form_explains_is_no_fault_beside_a_mistake() {
+    let pair = ["process-noise-doubled", "mixture-by-raw-moments"].map(|id| find(id).unwrap());
+    let [mistake, form] = pair;
+    let report = verdict(&mut planted(&[&mistake.id, &form.id]), "far.linear");
+    let text = immaculate::report::check::text(&report);
+    for (quantity, heading) in [(mistake.quantity, "FAULT"), (form.quantity, "OTHERWISE")] {
+        assert_eq!(report.is_otherwise(quantity), heading == "OTHERWISE", "{text}");
+        assert!(text.contains(&format!("{heading}  {}", quantity.name())), "{text}");
+    }
+    assert!(report.is_wrong() && !report.is_excused());
+    // So it is where they were found one equation after the other, or in different cases.
+    let part = |variant| Share {
+        variants: vec![variant],
+        cases: 1,
+    };
+    let in_parts = |unexplained: Vec<String>| Diagnosis::InParts {
+        parts: pair.map(part).to_vec(),
+        unexplained,
+        formulas: Formulas::default(),
+        of: 2,
+        pairs: true,
+    };
+    for (diagnosis, is_otherwise) in [
+        (Diagnosis::Several(pair.map(|variant| vec![variant]).to_vec()), true),
+        (in_parts(vec![]), true),
+        (in_parts(vec!["another".into()]), false),
+        (Diagnosis::One(vec![mistake]), false),
+        (Diagnosis::Nothing, false),
+    ] {
+        let report = Report {
+            diagnosis,
+            ..report.clone()
+        };
+        assert_eq!(
+            report.is_otherwise(form.quantity),
+            is_otherwise,
+            "{:?}",
+            report.diagnosis
+        );
+        assert!(!report.is_otherwise(mistake.quantity));
+    }
 }
 
 #[test]

@@ -652,6 +652,30 @@ fn a_problem_that_must_be_rejected_must_be_rejected() {
     assert!(is_wrong, "a crash is no rejection");
 }
 
+/// A program that leaves the checking to its caller and does not say so is told once.
+#[test]
+fn problems_that_are_all_run_though_they_must_be_rejected_are_said_once() {
+    let text_on = |answer: fn(&ProblemFile) -> Answer| {
+        let report = verdict_on(&mut Double::new(answer), &["rejected."]).unwrap();
+        assert!(report.is_wrong() && report.cases.len() > 10);
+        immaculate::report::check::text(&report)
+    };
+    let text = text_on(|_| shows(Trace::empty(&SMALL)));
+    assert_eq!(text.matches("NOT REJECTED").count(), 1, "{text}");
+    assert!(
+        text.contains("`\"validates\": false`") && !text.contains("rejected.shape"),
+        "{text}"
+    );
+    let text = text_on(|problem| match problem.id.as_str() {
+        "rejected.shape.matrix" => rejected("shape"),
+        _ => shows(Trace::empty(&SMALL)),
+    });
+    assert!(
+        text.matches("NOT REJECTED").count() > 9 && !text.contains("validates"),
+        "{text}"
+    );
+}
+
 #[test]
 fn a_good_problem_must_not_be_rejected() {
     let report = verdict_on(&mut Double::new(|_| rejected("shape")), &["update.kalman"]).unwrap();

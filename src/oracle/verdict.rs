@@ -9,6 +9,7 @@ use super::observation::Observation;
 use super::problem::{FilterFile, ProblemFile};
 use super::subject::{Broken, Ready};
 use super::trace::Dimensions;
+use super::variant::{Kind, Variant};
 use crate::imm::Quantity;
 
 /// How a case went.
@@ -189,6 +190,31 @@ impl Report {
     pub fn is_excused(&self) -> bool {
         let is_early = |case: &CaseReport| case.outcome == Outcome::Wrong && case.stopped.is_some();
         self.diagnosis.is_excuse() && !self.cases.iter().any(is_early)
+    }
+
+    /// Whether the faults of a quantity are those of forms and conventions, which are not wrong, though others may be mistakes.
+    pub fn is_otherwise(&self, quantity: Quantity) -> bool {
+        let members: Vec<&[&Variant]> = match &self.diagnosis {
+            Diagnosis::Several(members) => members.iter().map(Vec::as_slice).collect(),
+            Diagnosis::InParts { parts, unexplained, .. } if unexplained.is_empty() => {
+                parts.iter().map(|part| part.variants.as_slice()).collect()
+            }
+            Diagnosis::Pairs(pairs) => match &pairs[..] {
+                [pair] => pair.chunks(1).collect(),
+                _ => return self.is_excused(),
+            },
+            _ => return self.is_excused(),
+        };
+        let is_made_here = |member: &&[&Variant]| member.iter().any(|variant| variant.is_made_in(quantity));
+        let mut made_here = members.into_iter().filter(is_made_here).flatten().peekable();
+        self.is_excused() || made_here.peek().is_some() && made_here.all(|variant| variant.kind != Kind::Mistake)
+    }
+
+    /// Whether it rejects anything; so it is where it was not asked several problems that must be rejected.
+    pub fn rejects_anything(&self) -> bool {
+        let count = |is: fn(&Outcome) -> bool| self.cases.iter().filter(|case| is(&case.outcome)).count();
+        count(|outcome| matches!(outcome, Outcome::Rejected { .. })) > 0
+            || count(|outcome| *outcome == Outcome::NotRejected) < 2
     }
 
     /// Whether nothing could be judged at all.

@@ -72,7 +72,9 @@ pub(super) fn reason(case: &CaseReport) -> Option<String> {
 /// One line a case: what was judged and to how many digits.
 fn cases(report: &Report) -> String {
     let mut table = table(&["case", "verdict", "judged", "digits"]);
-    for case in &report.cases {
+    let rejects = report.rejects_anything();
+    let is_listed = |case: &&CaseReport| rejects || case.outcome != Outcome::NotRejected;
+    for case in report.cases.iter().filter(is_listed) {
         let judged = if case.of == 0 {
             String::new()
         } else {
@@ -82,7 +84,16 @@ fn cases(report: &Report) -> String {
         table.add_row(vec![case.id.clone(), words(&case.outcome).to_owned(), judged, digits]);
     }
     let mut text = format!("{table}\n");
-    for case in &report.cases {
+    if !rejects {
+        let run = report.cases.iter().filter(|case| case.outcome == Outcome::NotRejected);
+        let sentence = format!(
+            "NOT REJECTED: {} problems that must be rejected, all that were asked, were run all the same. A program that leaves the checking \
+             of its input to its caller says so: `\"validates\": false` in the ready message.",
+            run.count()
+        );
+        text.push_str(&wrapped(&sentence, "  "));
+    }
+    for case in report.cases.iter().filter(is_listed) {
         if let Some(reason) = reason(case) {
             // What a program writes keeps its lines.
             let mut lines = reason.lines();
@@ -98,9 +109,13 @@ fn cases(report: &Report) -> String {
 
 /// The faults by equation: how many, and the first in full.
 fn faults(report: &Report) -> String {
-    let heading = if report.is_excused() { "OTHERWISE" } else { "FAULT" };
     let mut text = String::new();
     for quantity in Quantity::ALL {
+        let heading = if report.is_otherwise(quantity) {
+            "OTHERWISE"
+        } else {
+            "FAULT"
+        };
         let faults: Vec<(&CaseReport, &Judged)> = report
             .faults()
             .filter(|(_, judged)| judged.place.1 == quantity)

@@ -23,7 +23,12 @@ pub fn json(report: &Report) -> Value {
             let values = case.judgement.iter().flat_map(|judgement| &judgement.values);
             let unusual: Vec<Value> = values
                 .filter(|value| value.finding != Finding::Right)
-                .map(|value| value_json(value, case.filters[value.place.2].equation(value.place.1), &names))
+                .map(|value| {
+                    let equation = case.filters[value.place.2].equation(value.place.1);
+                    let mut json = value_json(value, equation, &names);
+                    json["excused"] = json!(value.finding.is_fault() && report.is_otherwise(value.place.1));
+                    json
+                })
                 .collect();
             json!({
                 "id": case.id,
