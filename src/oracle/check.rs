@@ -92,7 +92,7 @@ pub enum NotMade {
 }
 
 /// Every declared name is one that there is.
-fn check_known(what: &'static str, declared: Option<&Vec<String>>, known: Vec<&str>) -> Result<(), NotMade> {
+pub(super) fn check_known(what: &'static str, declared: Option<&Vec<String>>, known: Vec<&str>) -> Result<(), NotMade> {
     let is_unknown = |name: &&String| !known.contains(&name.as_str());
     match declared.into_iter().flatten().find(is_unknown) {
         None => Ok(()),
@@ -105,7 +105,7 @@ fn check_known(what: &'static str, declared: Option<&Vec<String>>, known: Vec<&s
 }
 
 /// The variants by which a program that declares conventions is judged.
-fn declared(ready: &Ready) -> Result<Vec<&'static str>, NotMade> {
+pub(super) fn declared(ready: &Ready) -> Result<Vec<&'static str>, NotMade> {
     check_known("kind of filter", ready.kinds.as_ref(), kinds().collect())?;
     check_known("format", ready.formats.as_ref(), vec![FORMAT, FORMAT_2])?;
     let mut ids = Vec::new();
@@ -224,7 +224,7 @@ pub fn check_problems(
 }
 
 /// A problem that a program is asked, with what is expected.
-enum Question<'a> {
+pub(super) enum Question<'a> {
     /// A published case.
     Published(&'a Case),
     /// A problem of the user, certified to so many steps.
@@ -349,9 +349,9 @@ fn never_shown(asked: &[&Question], traces: &[&Trace]) -> Vec<Quantity> {
 }
 
 /// What can be said of one answer, and what is shown with its reference if there is something to explain.
-type JudgedAnswer = (CaseReport, Option<(Trace, Reference)>);
+pub(super) type JudgedAnswer = (CaseReport, Option<(Trace, Reference)>);
 
-fn judge_answer(
+pub(super) fn judge_answer(
     question: &Question,
     answer: Answer,
     ready: &Ready,

@@ -83,6 +83,7 @@ mod reference;
 pub mod run;
 pub mod scale;
 pub mod schema;
+pub mod search;
 pub mod setup;
 mod shown_as;
 mod single;
