@@ -3,6 +3,7 @@
 //! After this file the reader knows what a check can be asked for, and what its exit status means.
 
 use super::progress::bar;
+use super::search::{self, About, SearchArguments};
 use super::select::Select;
 use super::{Done, Refusal, json_text, read_file};
 use clap::Args;
@@ -17,7 +18,7 @@ use std::time::Duration;
 
 #[derive(Args)]
 #[command(
-    after_help = "Exit status: 0 all that was judged is right, 1 something is wrong (with --strict: or was not judged), 2 the check could not be made or nothing was judged.\n\n\
+    after_help = "Exit status: 0 all that was judged is right, 1 something is wrong (with --strict: or was not judged), 2 the check could not be made or nothing was judged. Of a search: 0 nothing was found, 1 something was, 2 nothing could be judged.\n\n\
     The protocol and the file formats are in spec/formats.md; examples in several languages are in tests/adapters."
 )]
 pub struct CheckArguments {
@@ -38,6 +39,8 @@ pub struct CheckArguments {
     /// End with status 1 also where something that a filter may meet was not judged
     #[arg(long, conflicts_with = "problems")]
     strict: bool,
+    #[command(flatten)]
+    search: SearchArguments,
     /// Print JSON instead of text
     #[arg(long)]
     json: bool,
@@ -57,6 +60,16 @@ pub fn run(arguments: &CheckArguments) -> Result<Done, Refusal> {
         )),
     };
     let problems = own_problems(&arguments.problems)?;
+    if let Some(time) = arguments.search.time() {
+        let about = About {
+            time,
+            kinds: arguments.select.selection().kinds,
+            problems,
+            command: arguments.command.clone(),
+            is_json: arguments.json,
+        };
+        return search::run(&arguments.search, about, subject.as_mut());
+    }
     let selected = if arguments.problems.is_empty() {
         arguments.select.cases()?.len()
     } else {

@@ -12,6 +12,7 @@ pub mod progress;
 pub mod report;
 pub mod reproduce;
 pub mod rule;
+pub mod search;
 pub mod select;
 pub mod stability;
 pub mod sweep;

@@ -234,7 +234,7 @@ fn one(variant: &Variant) -> String {
 
 const EXPLAINED: &str = "every value that was shown is explained by the program's own values before it.";
 
-fn diagnosis(diagnosis: &Diagnosis) -> String {
+pub(super) fn diagnosis(diagnosis: &Diagnosis) -> String {
     let mut text = String::new();
     match diagnosis {
         Diagnosis::Nothing => {}

@@ -121,7 +121,7 @@ fn finding(finding: Finding) -> &'static str {
     }
 }
 
-fn diagnosis_json(diagnosis: &Diagnosis) -> Value {
+pub(super) fn diagnosis_json(diagnosis: &Diagnosis) -> Value {
     let one = |variant: &Variant| json!({ "id": variant.id, "kind": variant.kind.name(), "about": variant.about });
     let list = |variants: &[&Variant]| -> Vec<Value> { variants.iter().map(|variant| one(variant)).collect() };
     match diagnosis {

@@ -8,7 +8,7 @@
 //!   published and computed;
 //! - [`conversion`]: where a converted measurement can be trusted;
 //! - [`stability`], [`stability_map`]: two fixed-gain filters, and all pairs of them;
-//! - [`check`], [`check_json`]: the verdict on a program under test;
+//! - [`check`], [`check_json`]: the verdict on a program under test; [`search`]: what a search has found;
 //! - [`chart`], [`palette`]: what all figures have in common;
 //! - [`page`]: all of the papers' results in one file.
 
@@ -33,6 +33,7 @@ pub mod path;
 pub mod published;
 pub mod reproduction;
 pub mod rule;
+pub mod search;
 pub mod stability;
 pub mod stability_map;
 pub mod trace;
