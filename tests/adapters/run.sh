@@ -118,6 +118,18 @@ python_filters() {
     done
 
     expect 0 "RIGHT: numpy example, double precision" "130 of 130 values" -- --problem "$adapters/formulas.json" -- "${numpy[@]}"
+    # A search finds nothing in it, and a mistake in the smallest problem that shows it.
+    local search=(--seed 3 --out "$work/found.json")
+    expect 0 "FOUND NOTHING" "seed 3" -- --search 5 "${search[@]}" -- "${numpy[@]}"
+    expect 0 "FOUND NOTHING" -- --search 5 "${search[@]}" --problem tests/adapters/automotive.json -- "$python" "$adapters/automotive_imm.py"
+    while read -r mistake quantity size; do
+        expect 1 "FOUND: $quantity is wrong" "to $size in" "($mistake; mistake)" -- --search 60 "${search[@]}" -- "${numpy[@]}" --mistake "$mistake"
+        expect 1 "FAULT $quantity" -- --problem "$work/found.json" -- "${numpy[@]}" --mistake "$mistake"
+    done <<'END'
+mixed-spread-omitted mixed.covariance 1 step, 2 modes, 1 component, 1 measured
+innovation-not-wrapped innovation 1 step, 1 mode, 2 components, 1 measured
+last-likelihood-used-again mode_probabilities 2 steps, 2 modes, 1 component, 1 measured
+END
 
     # A mistake, and the equation in which it is made.
     while read -r mistake quantity; do
