@@ -188,6 +188,25 @@ fn a_noise_that_was_scaled_is_named_with_its_factor() {
 }
 
 #[test]
+fn a_noise_that_is_another_is_solved_for() {
+    let found = computed(
+        |setup| {
+            for mode in &mut setup.problem.modes {
+                let entry = |i: usize, k: usize| [[3, 0, 0, 1], [0, 4, 1, 0], [0, 1, 5, 0], [1, 0, 0, 6]][i][k];
+                mode.noise = DMatrix::from_fn(4, 4, |i, k| Number::ratio(entry(i, k), 10));
+            }
+        },
+        &["steps.one-mode.kalman"],
+    );
+    assert_eq!(
+        found,
+        [
+            "predicted.covariance = F · mixed.covariance · Fᵀ + Q, where Q = [0.3 0 0 0.1; 0 0.4 0.1 0; 0 0.1 0.5 0; 0.1 0 0 0.6]"
+        ]
+    );
+}
+
+#[test]
 fn two_noises_that_were_exchanged_are_named() {
     let found = computed(
         |setup| {

@@ -52,7 +52,12 @@ pub(super) fn explained(explanation: &Explanation) -> String {
     } = explanation;
     let difference = short(shown - gives);
     let what = term.as_ref().map_or_else(String::new, |term| format!(": {term}"));
-    let sum = wrapped(&format!("{equation} = {numbers} = {}", short(*gives)), "    ");
+    let sum = if *numbers == short(*gives) {
+        numbers.clone()
+    } else {
+        format!("{numbers} = {}", short(*gives))
+    };
+    let sum = wrapped(&format!("{equation} = {sum}"), "    ");
     format!(
         "{sum}{}",
         wrapped(

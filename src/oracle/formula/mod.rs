@@ -10,7 +10,8 @@
 //! ```
 //!
 //! Reading order: `tree`, `print` and `value` say what a formula is; `instance` where its numbers come from; `right` has the right ones,
-//! `edit` what is near them, `search` finds the one that was computed, and `condition` where; `explain` puts numbers into the right one.
+//! `edit` what is near them, `search` finds the one that was computed, and `condition` where; `solve` finds the input that would explain what
+//! is shown, and `explain` puts numbers into the right formula.
 
 mod condition;
 mod edit;
@@ -19,6 +20,7 @@ mod instance;
 mod print;
 mod right;
 mod search;
+mod solve;
 mod tree;
 mod value;
 

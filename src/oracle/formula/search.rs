@@ -8,6 +8,7 @@ use super::edit::Names;
 use super::edit::{Candidate, Start, candidates};
 use super::instance::{Along, Instance};
 use super::right::{right, starts};
+use super::solve::solved;
 use super::tree::Tree;
 use super::value::{With, by_rows};
 use crate::imm::Quantity;
@@ -83,9 +84,7 @@ pub fn find(evidence: &[Evidence], conventions: &[&str]) -> Result<Formulas, Inv
     let mut fitting: Vec<Vec<Fitting>> = groups.iter().map(Group::fitting).collect();
     prefer_shared(&mut fitting);
     let pairs = groups.iter().zip(&fitting);
-    let found: Vec<Found> = pairs
-        .filter_map(|(group, fitting)| Some(group.found(nearest(fitting)?)))
-        .collect();
+    let found: Vec<Found> = pairs.filter_map(|(group, fitting)| group.explained(fitting)).collect();
     let is_complete = found.len() == groups.len() && found.iter().all(|found| found.explains == found.of);
     Ok(Formulas {
         found: merged(found),
@@ -277,6 +276,15 @@ impl Group<'_> {
         fitting.collect()
     }
 
+    /// The nearest formula that explains all; else the input that does, or what explains some.
+    fn explained(&self, fitting: &[Fitting]) -> Option<Found> {
+        let found = nearest(fitting).map(|chosen| self.found(chosen));
+        if found.as_ref().is_some_and(|found| found.explains == found.of) {
+            return found;
+        }
+        solved(&self.instances(true).collect::<Vec<_>>()).or(found)
+    }
+
     /// What is said of the chosen one, counted over all values.
     fn found(&self, chosen: &Fitting) -> Found {
         let with = chosen.candidate.with(chosen.number);
@@ -407,7 +415,7 @@ impl Instance<'_> {
     }
 
     /// The filter of the mode, or the filters of all.
-    fn filter_name(&self) -> String {
+    pub(super) fn filter_name(&self) -> String {
         let problem = self.run.case.problem;
         if self.place.1.is_of_mode() {
             problem.filter_of(self.place.2).name().to_owned()
