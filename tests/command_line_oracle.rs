@@ -89,6 +89,50 @@ fn a_trace_shows_every_value_with_its_equation() {
     );
 }
 
+/// Exact: a convention changes what it is of, in every form of a trace; one that is the papers' changes nothing.
+#[test]
+fn a_trace_follows_a_declared_convention() {
+    let first = |arguments: &[&str]| {
+        json_of(&[&["trace", "convention.first-step", "--json"], arguments].concat())["steps"][0].clone()
+    };
+    let of_papers = first(&[]);
+    assert_eq!(first(&["--convention", "first_step=mixed"]), of_papers);
+    let predicted = first(&["--convention", "first_step=predicted"]);
+    let problem = &of("convention.first-step").problem;
+    let given: Vec<&Vec<f64>> = problem.initial.modes.iter().map(|estimate| &estimate.mean).collect();
+    for (mode, mean) in given.iter().enumerate() {
+        assert_eq!(
+            predicted["modes"][mode]["predicted"]["mean"],
+            serde_json::json!(mean),
+            "the estimate is the prediction"
+        );
+        assert_ne!(of_papers["modes"][mode]["predicted"]["mean"], serde_json::json!(mean));
+    }
+    let certified = succeeds(&[
+        "trace",
+        "convention.first-step",
+        "--digits",
+        "6",
+        "--convention",
+        "first_step=predicted",
+    ]);
+    assert_ne!(
+        certified,
+        succeeds(&["trace", "convention.first-step", "--digits", "6"])
+    );
+    for (given, said) in [
+        ("first_step", "needs a value"),
+        (
+            "first_step=prior",
+            "there is no convention `first_step`: \"prior\"; known are",
+        ),
+    ] {
+        let output = run(&["trace", "convention.first-step", "--convention", given]);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(String::from_utf8_lossy(&output.stderr).contains(said), "{output:?}");
+    }
+}
+
 /// Exact: JSON and CSV are the doubles of the library.
 #[test]
 fn a_trace_as_json_and_as_csv_is_that_of_the_library() {

@@ -5,6 +5,7 @@
 use super::{Done, Refusal, json_text, read_file};
 use clap::Args;
 use immaculate::oracle::certify::{certified_as_far_as_it_goes, certified_decimals};
+use immaculate::oracle::check::convention;
 use immaculate::oracle::csv;
 use immaculate::oracle::invalid::Invalid;
 use immaculate::oracle::problem::ProblemFile;
@@ -31,6 +32,9 @@ pub struct TraceArguments {
     /// Print certified doubles as literals of a language, for a unit test
     #[arg(long = "as", value_name = "LANGUAGE", value_enum, conflicts_with_all = ["digits", "json", "csv"])]
     language: Option<Language>,
+    /// Compute by a convention that is not the papers', as a program declares it: `first_step=predicted`, say; may be given again
+    #[arg(long = "convention", value_name = "KEY=VALUE")]
+    conventions: Vec<String>,
 }
 
 pub fn run(arguments: &TraceArguments) -> Result<Done, Refusal> {
@@ -45,7 +49,8 @@ pub fn run(arguments: &TraceArguments) -> Result<Done, Refusal> {
         None => read_file(&arguments.file)?,
     };
     let wrong = |error: &dyn std::fmt::Display| Refusal::Request(format!("{name}: {error}"));
-    let problem = ProblemFile::read(&text).map_err(|error| wrong(&error))?;
+    let mut problem = ProblemFile::read(&text).map_err(|error| wrong(&error))?;
+    problem.declared = declared(&arguments.conventions)?;
     if let Some(language) = arguments.language {
         let (trace, certified) = certified_as_far_as_it_goes(&problem).map_err(|error| wrong(&error))?;
         return Ok(literal::text(&problem.id, &trace, certified, language).into());
@@ -61,6 +66,20 @@ pub fn run(arguments: &TraceArguments) -> Result<Done, Refusal> {
     }
     let text = report::trace::text(&problem, &decimals);
     Ok(format!("{text}{digits} digits of every value, proven with {bits} bits\n").into())
+}
+
+/// The variants of conventions that are given as `KEY=VALUE`.
+fn declared(conventions: &[String]) -> Result<Vec<&'static str>, Refusal> {
+    let mut variants = Vec::new();
+    for given in conventions {
+        let Some((key, value)) = given.split_once('=') else {
+            return Err(Refusal::Request(format!(
+                "--convention {given}: needs a value, as in --convention first_step=predicted"
+            )));
+        };
+        variants.extend(convention(key, value).map_err(Refusal::request)?);
+    }
+    Ok(variants)
 }
 
 /// The run in doubles. One that stops before its end is shown as far as it came, with what stopped it as a complaint; so is one whose

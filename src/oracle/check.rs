@@ -53,7 +53,7 @@ pub enum NotMade {
     #[error("{0}")]
     Subject(#[from] Broken),
     /// A convention that is not known.
-    #[error("the program declares `{key}`: {value:?}; known are {known}")]
+    #[error("there is no convention `{key}`: {value:?}; known are {known}")]
     Convention {
         /// Its key.
         key: String,
@@ -108,33 +108,31 @@ pub(super) fn check_known(what: &'static str, declared: Option<&Vec<String>>, kn
 pub(super) fn declared(ready: &Ready) -> Result<Vec<&'static str>, NotMade> {
     check_known("kind of filter", ready.kinds.as_ref(), kinds().collect())?;
     check_known("format", ready.formats.as_ref(), vec![FORMAT, FORMAT_2])?;
-    let mut ids = Vec::new();
-    for (key, value) in &ready.conventions {
-        let is_ours = super::problem::Conventions::default().has(key, value);
-        let variant = catalogue()
-            .iter()
-            .find(|variant| variant.convention.as_ref() == Some(key) && variant.value.as_ref() == Some(value));
-        match variant {
-            _ if is_ours => {}
-            Some(variant) => ids.push(variant.id.as_str()),
-            None => {
-                let declaration = |variant: &'static Variant| {
-                    Some(format!(
-                        "`{}`: {:?}",
-                        variant.convention.as_ref()?,
-                        variant.value.as_ref()?
-                    ))
-                };
-                let known: Vec<String> = catalogue().iter().filter_map(declaration).collect();
-                return Err(NotMade::Convention {
-                    key: key.clone(),
-                    value: value.clone(),
-                    known: known.join(", "),
-                });
-            }
-        }
+    let ids = ready.conventions.iter().map(|(key, value)| convention(key, value));
+    Ok(ids.collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
+}
+
+/// The variant of a declared convention; none of one that the papers have.
+///
+/// # Errors
+///
+/// [`NotMade::Convention`] for one that there is not.
+pub fn convention(key: &str, value: &str) -> Result<Option<&'static str>, NotMade> {
+    if super::problem::Conventions::default().has(key, value) {
+        return Ok(None);
     }
-    Ok(ids)
+    let of = |variant: &'static Variant| variant.convention.as_deref().zip(variant.value.as_deref());
+    let mut variants = catalogue().iter();
+    if let Some(variant) = variants.find(|variant| of(variant) == Some((key, value))) {
+        return Ok(Some(&variant.id));
+    }
+    let all = catalogue().iter().filter_map(of);
+    let known: Vec<String> = all.map(|(key, value)| format!("`{key}`: {value:?}")).collect();
+    Err(NotMade::Convention {
+        key: key.to_owned(),
+        value: value.to_owned(),
+        known: known.join(", "),
+    })
 }
 
 /// Checks a program on the selected cases; `progress` is told of each case that is done.

@@ -72,6 +72,9 @@ pub struct ProblemFile {
     pub conventions: Conventions,
     /// One entry a step: 1, 2, 3, …
     pub measurements: Vec<MeasurementAt>,
+    /// Conventions that are not the papers', by the ids of their variants: no key of the file, but what whoever runs it declares.
+    #[serde(skip)]
+    pub declared: Vec<&'static str>,
 }
 
 /// A mode.

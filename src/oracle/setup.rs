@@ -5,6 +5,7 @@
 use super::bound::{Bound, Functions};
 use super::invalid::{Class, Invalid};
 use super::problem::{FilterFile, MeasurementAt, MeasurementFile, ModeFile, ProblemFile, Rows, UNMIXED};
+use super::variant;
 use crate::filter::Filter;
 use crate::filter::fixed_gain::FixedGain;
 use crate::gaussian::Gaussian;
@@ -149,7 +150,7 @@ impl ProblemFile {
             sensor: self.sensor(0, &functions, number, interval)?,
             measurement_noise: matrix(&self.noise, number),
         };
-        Ok(Setup {
+        let mut setup = Setup {
             changes: self.changes(&problem, &functions, number, interval)?,
             problem,
             equations: Equations::standard(),
@@ -158,7 +159,11 @@ impl ProblemFile {
                 mode_probabilities: list(&self.initial.mode_probabilities),
             },
             measurements: self.measurements.iter().map(of_step).collect(),
-        })
+        };
+        for id in &self.declared {
+            variant::apply(id, &mut setup);
+        }
+        Ok(setup)
     }
 
     /// The modes in a step of this length.

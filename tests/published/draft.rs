@@ -131,6 +131,7 @@ impl Draft {
             },
             conventions: Conventions::default(),
             measurements: Vec::new(),
+            declared: Vec::new(),
         })
     }
 
