@@ -89,6 +89,9 @@ pub enum NotMade {
     /// Two problems have the same id.
     #[error("two problems have the id `{0}`; answers could not be told apart")]
     SameId(String),
+    /// The subject was interrupted.
+    #[error("the check was interrupted")]
+    Interrupted,
 }
 
 /// Every declared name is one that there is.
@@ -293,6 +296,9 @@ fn ask(subject: &mut dyn Subject, questions: &[Question], progress: &dyn Fn(&str
     for question in &asked {
         let problem = question.problem();
         let answer = subject.run(problem);
+        if subject.is_interrupted() {
+            return Err(NotMade::Interrupted);
+        }
         let (report, shown) = judge_answer(question, answer, &ready, &conventions)?;
         if let Some((shown, reference)) = shown {
             answered.push(Answered {

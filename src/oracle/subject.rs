@@ -296,6 +296,40 @@ pub trait Subject {
     /// Runs a problem.
     fn run(&mut self, problem: &ProblemFile) -> Answer;
 
+    /// Whether somebody has interrupted it: then nothing more is asked, and there is no verdict.
+    ///
+    /// Example: a filter whose author has seen enough after the first problem.
+    ///
+    /// ```
+    /// use immaculate::oracle::check::{NotMade, Selection, check};
+    /// use immaculate::oracle::problem::ProblemFile;
+    /// use immaculate::oracle::subject::{Answer, Broken, Ready, Subject};
+    ///
+    /// struct Interrupted(usize);
+    ///
+    /// impl Subject for Interrupted {
+    ///     fn start(&mut self) -> Result<Ready, Broken> {
+    ///         Ok(Ready::default())
+    ///     }
+    ///
+    ///     fn run(&mut self, _: &ProblemFile) -> Answer {
+    ///         self.0 += 1;
+    ///         Answer::Skipped { reason: "enough".into() }
+    ///     }
+    ///
+    ///     fn is_interrupted(&self) -> bool {
+    ///         true
+    ///     }
+    /// }
+    ///
+    /// let mut program = Interrupted(0);
+    /// assert_eq!(check(&mut program, &Selection::default(), &|_| {}), Err(NotMade::Interrupted));
+    /// assert_eq!(program.0, 1);
+    /// ```
+    fn is_interrupted(&self) -> bool {
+        false
+    }
+
     /// Ends; what was strange on the way, a sentence each.
     fn stop(&mut self) -> Vec<String> {
         Vec::new()
