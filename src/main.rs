@@ -11,12 +11,13 @@ use clap::{Parser, Subcommand};
 pub use cli::Refusal;
 use cli::{Done, print};
 use immaculate::file::shortened;
+use std::ffi::OsString;
 use std::io::Write;
 use std::process::ExitCode;
 
 /// The executable specification of the interacting multiple model filter.
 #[derive(Parser)]
-#[command(version, about, arg_required_else_help = true)]
+#[command(name = "immaculate", version, about, arg_required_else_help = true)]
 #[command(
     after_help = "Exit status: 0 done, 1 output could not be written, something that was checked is wrong, or a filter came to a step it could not do, 2 the arguments or the input are wrong or name something that does not exist. A reader that stops reading is no error."
 )]
@@ -54,7 +55,12 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let done = match Cli::try_parse() {
+    ExitCode::from(status_of(std::env::args_os()))
+}
+
+/// Does what the arguments ask for, the first of them the program's name, and says and prints what it has to; the exit status.
+pub fn status_of(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    let done = match Cli::try_parse_from(arguments) {
         Ok(cli) => run(&cli),
         // Help and version are output like any other; what is wrong with arguments goes to standard error.
         Err(error) if !error.use_stderr() => Ok(error.render().to_string().into()),
@@ -65,7 +71,7 @@ fn main() -> ExitCode {
                 let sentence = "put `--` before the program that is checked: `immaculate check -- PROGRAM ARGUMENTS`";
                 return complain(sentence, 2);
             }
-            return ExitCode::from(2);
+            return 2;
         }
     };
     match done.and_then(|done| print(&done.text).map(|_| done)) {
@@ -73,7 +79,7 @@ fn main() -> ExitCode {
             complaint: None,
             status,
             ..
-        }) => ExitCode::from(status),
+        }) => status,
         Ok(Done {
             complaint: Some(sentence),
             ..
@@ -115,12 +121,12 @@ pub fn run(cli: &Cli) -> Result<Done, Refusal> {
 }
 
 /// A sentence of bounded length on standard error. Whatever it quotes, it cannot steer a terminal.
-fn complain(sentence: &str, status: u8) -> ExitCode {
+fn complain(sentence: &str, status: u8) -> u8 {
     const KEPT: usize = 2000;
     let is_plain = |c: char| c == '\n' || !c.is_control();
     let shown = |c: char| if is_plain(c) { c } else { char::REPLACEMENT_CHARACTER };
     let sentence: String = shortened(sentence, KEPT).chars().map(shown).collect();
     // Nothing is left to be done when not even the complaint can be written.
     let _ = writeln!(std::io::stderr(), "immaculate: {sentence}");
-    ExitCode::from(status)
+    status
 }
