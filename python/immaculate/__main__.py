@@ -1,0 +1,5 @@
+"""`python -m immaculate`: the command line."""
+
+from immaculate._program import main
+
+main()
