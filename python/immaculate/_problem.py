@@ -179,6 +179,22 @@ class Problem(Models):
         file: dict[str, Any] = json.loads(self._native.json())
         return file
 
+    def of_mode(self, j: int) -> "Problem":
+        """The problem of mode j alone, with all measurements: for one filter without modes.
+
+        Its id is ID.mode-J; it is not published, and `check(…, problems=[…])` certifies it first.
+        """
+        file = self.to_dict()
+        file.update(id=f"{self.id}.mode-{j}", modes=[file["modes"][j]], transition=[[1.0]])
+        file["initial"] = {"mode_probabilities": [1.0], "modes": [file["initial"]["modes"][j]]}
+        file["conventions"].pop("unequal_dimensions", None)  # of modes that lack entries of the state which others have
+        if "modes" in file["filter"]:
+            file["filter"]["modes"] = [file["filter"]["modes"][j]]
+        for entry in file["measurements"]:
+            entry.pop("transition", None)
+            entry.update({key: [entry[key][j]] for key in ("F", "Q") if key in entry})
+        return Problem.from_dict(file)
+
     def __repr__(self) -> str:
         kinds = ", ".join(self.kinds)
         return f"<immaculate.Problem {self.id}: {kinds}; n = {self.n}, r = {self.r}, {len(self._file['measurements'])} steps>"

@@ -93,8 +93,7 @@ class Kalman:
 
     def predict(self):
         mode = self.models.modes[0]
-        self.x[:] = mode.F @ self.x
-        self.P[:] = mode.F @ self.P @ mode.F.T + mode.Q
+        self.x[:, 0], self.P[:] = predicted(self.x[:, 0], self.P, mode.F, mode.Q, mode.offset)
 
     def update(self, z):
         x, P, _ = updated(self.x[:, 0], self.P, z, self.models.H, self.models.R)
@@ -106,8 +105,7 @@ class WithoutNoise(Kalman):
 
     def predict(self):
         mode = self.models.modes[0]
-        self.x[:] = mode.F @ self.x
-        self.P[:] = mode.F @ self.P @ mode.F.T
+        self.x[:, 0], self.P[:] = predicted(self.x[:, 0], self.P, mode.F, 0 * mode.Q, mode.offset)
 
 
 #: An extended filter by formulas: the distance from a sensor beside the line, in steps of two lengths.

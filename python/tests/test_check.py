@@ -36,6 +36,22 @@ def test_one_filter_with_predict_and_update_is_judged():
     assert wrong.is_wrong and "predicted.covariance" in str(wrong)
 
 
+def test_one_filter_is_right_in_every_problem_of_a_mode_alone():
+    alone = [problem.of_mode(problem.r - 1) for problem in immaculate.cases("kalman")]
+    cases = immaculate.check(Kalman, kinds=["kalman"], problems=alone).as_dict()["cases"]
+    assert len(cases) >= 50 and {case["verdict"] for case in cases} == {"right"}
+    wrong = immaculate.check(WithoutNoise, kinds=["kalman"], problems=alone)
+    assert "process-noise-omitted" in str(wrong)
+
+
+def test_every_mode_of_every_case_is_a_problem_alone():
+    for problem in immaculate.cases():
+        for j in range(problem.r):
+            alone = problem.of_mode(j)
+            assert alone.r == 1 and alone.modes[0].name == problem.modes[j].name
+            assert np.array_equal(alone.means[0], problem.means[j]) and len(alone.steps) == len(problem.steps)
+
+
 def test_one_filter_skips_problems_of_several_modes_and_nothing_judged_is_not_right():
     verdict = immaculate.check(Kalman, cases=[STEP])
     assert verdict.as_dict()["cases"][0]["verdict"] == "skipped"
