@@ -4,7 +4,7 @@
 //! from the right equations on these where it does not.
 
 use super::right::{Drawing, definition};
-use super::tree::{Given, Leaf, Of, Value};
+use super::tree::{Given, Leaf, Of, Tree, Value};
 use super::value::{Matrix, Number, Term, With, by_rows};
 use crate::filter::Update;
 use crate::filter::extended::{measurement_jacobian, motion_jacobian};
@@ -112,6 +112,30 @@ impl<'a> Instance<'a> {
             Of::EachRightBefore if of_mode && step > 1 => self.each_right(step - 1, quantity),
             _ => None,
         }
+    }
+
+    /// Whether the program shows all values of the trace that a formula is made of.
+    pub(super) fn shows_inputs_of(&self, tree: &Tree) -> bool {
+        let (step, _, mode) = self.place;
+        let shown = self.run.case.shown;
+        let is_shown = |step: usize, quantity: Quantity, mode: usize| {
+            step == 0
+                || shown
+                    .get(step, quantity, if quantity.is_of_mode() { mode } else { 0 })
+                    .is_some()
+        };
+        tree.leaves().into_iter().all(|leaf| match (leaf.value, leaf.of) {
+            (Value::Traced(quantity), Of::Each) => (0..self.modes()).all(|mode| is_shown(step, quantity, mode)),
+            (Value::Traced(quantity), Of::EachBefore) => {
+                (0..self.modes()).all(|mode| is_shown(step - 1, quantity, mode))
+            }
+            (Value::Traced(quantity), Of::Before) => is_shown(step - 1, quantity, mode),
+            (Value::Traced(quantity), _) => is_shown(step, quantity, mode),
+            (Value::Defined(name), _) => {
+                definition(name, self.drawing()).is_none_or(|tree| self.shows_inputs_of(&tree))
+            }
+            (Value::Given(_), _) => true,
+        })
     }
 
     /// A value as the program shows it, or as the equations give it where it does not. At step 0 there are the initial estimates alone.

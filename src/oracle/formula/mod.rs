@@ -16,6 +16,7 @@
 mod condition;
 mod edit;
 mod explain;
+mod fit;
 mod instance;
 mod print;
 mod right;

@@ -4,8 +4,8 @@
 //! where the right formula does not. What also gives the values at which the right one holds is better than what does so at some only, and
 //! what is nearer to the right formula is better than what is far.
 
-use super::edit::Names;
-use super::edit::{Candidate, Start, candidates};
+use super::edit::{Candidate, Names, candidates};
+use super::fit::fitted;
 use super::instance::{Along, Instance};
 use super::right::{right, starts};
 use super::solve::solved;
@@ -47,7 +47,7 @@ pub struct Found {
 pub struct Formulas {
     /// Quantity by quantity, in the order in which they are computed.
     pub found: Vec<Found>,
-    /// Whether every faulty value is explained.
+    /// Whether every faulty value is explained, and from values that are all shown: from hidden ones much can be explained.
     pub is_complete: bool,
 }
 
@@ -56,6 +56,9 @@ const PROBES: usize = 4;
 
 /// So many values of each, faulty and right, are looked at: in a long run one step says what the next one says.
 const VALUES: usize = 40;
+
+/// A fitted number must give at least so many shown ones: one or two can be had by any.
+const NUMBERS_OF_A_FIT: usize = 3;
 
 /// So many runs with random rounding tell how far a candidate may be off.
 const CANDIDATE_RUNS: u64 = 4;
@@ -85,7 +88,9 @@ pub fn find(evidence: &[Evidence], conventions: &[&str]) -> Result<Formulas, Inv
     prefer_shared(&mut fitting);
     let pairs = groups.iter().zip(&fitting);
     let found: Vec<Found> = pairs.filter_map(|(group, fitting)| group.explained(fitting)).collect();
-    let is_complete = found.len() == groups.len() && found.iter().all(|found| found.explains == found.of);
+    let is_complete = found.len() == groups.len()
+        && found.iter().all(|found| found.explains == found.of)
+        && groups.iter().all(Group::is_of_shown_values);
     Ok(Formulas {
         found: merged(found),
         is_complete,
@@ -276,9 +281,17 @@ impl Group<'_> {
         fitting.collect()
     }
 
+    /// Whether all that the right formula is made of is shown, wherever a value is faulty.
+    fn is_of_shown_values(&self) -> bool {
+        let is_shown = |at: &Instance| self.forms.first().is_none_or(|form| at.shows_inputs_of(form));
+        self.instances(true).all(is_shown)
+    }
+
     /// The nearest formula that explains all; else the input that does, or what explains some.
     fn explained(&self, fitting: &[Fitting]) -> Option<Found> {
+        // What explains less than half is chance, or has no one cause.
         let found = nearest(fitting).map(|chosen| self.found(chosen));
+        let found = found.filter(|found| 2 * found.explains >= found.of);
         if found.as_ref().is_some_and(|found| found.explains == found.of) {
             return found;
         }
@@ -320,7 +333,7 @@ fn thinned<'b, 'a: 'b>(all: impl Iterator<Item = &'b Instance<'a>>, most: usize)
 }
 
 impl Candidate {
-    fn with(&self, number: Option<f64>) -> With<'_> {
+    pub(super) fn with(&self, number: Option<f64>) -> With<'_> {
         With {
             number,
             definition: self.definition.as_ref().map(|(name, tree)| (*name, tree)),
@@ -352,6 +365,14 @@ fn fit_all(candidate: Candidate, probes: &[&Instance], all: &[&Instance]) -> Opt
         return None;
     }
     let everywhere: Vec<Option<bool>> = all.iter().map(holds).collect();
+    let given = all
+        .iter()
+        .zip(&everywhere)
+        .filter(|(at, holds)| at.is_wrong && **holds == Some(true));
+    let numbers: usize = given.filter_map(|(at, _)| at.shown_numbers()).map(<[f64]>::len).sum();
+    if number.is_some() && numbers < NUMBERS_OF_A_FIT {
+        return None;
+    }
     let penalty = |is_wrong: bool| {
         let fails = all
             .iter()
@@ -424,57 +445,3 @@ impl Instance<'_> {
         }
     }
 }
-
-/// The number with which a candidate gives the probes best, by least squares; a floor is what is shown itself.
-fn fitted(candidate: &Candidate, start: Start, probes: &[&Instance]) -> Option<f64> {
-    let variances = || {
-        probes
-            .iter()
-            .filter_map(|at| at.shown_numbers())
-            .flat_map(|shown| shown.iter().copied().step_by(shown.len().isqrt() + 1))
-    };
-    let mut number = match start {
-        Start::At(number) => number,
-        Start::LeastVariance => return variances().reduce(f64::min),
-        Start::GreatestVariance => return variances().reduce(f64::max),
-    };
-    for _ in 0..ITERATIONS {
-        let width = 1e-4 * number.abs().max(1.0);
-        let (mut slope_squares, mut slope_rests) = (0.0, 0.0);
-        for at in probes {
-            let value = |number: f64| Some(by_rows(&candidate.tree.matrix(at, candidate.with(Some(number)))?));
-            let (here, there, shown) = (value(number)?, value(number + width)?, at.shown_numbers()?);
-            let (step, quantity, mode) = at.place;
-            let noise = at.run.case.reference.noise.get(step, quantity, mode)?;
-            let scale = at.run.case.reference.scale.get(step, quantity, mode)?;
-            if here.len() != shown.len() {
-                return None;
-            }
-            for index in 0..shown.len() {
-                let unit = noise[index].max(f64::EPSILON * scale[index]);
-                let slope = (there[index] - here[index]) / width / unit;
-                slope_squares += slope * slope;
-                slope_rests += slope * (shown[index] - here[index]) / unit;
-            }
-        }
-        let change = slope_rests / slope_squares;
-        if !change.is_finite() {
-            return None;
-        }
-        number += change;
-    }
-    Some(plain(number))
-}
-
-/// A number that is a short one to eight digits is the short one: people write 0.1 and 3.
-fn plain(number: f64) -> f64 {
-    let short: f64 = format!("{number:.3e}").parse().unwrap_or(number);
-    if (number - short).abs() <= 1e-8 * short.abs() {
-        short
-    } else {
-        number
-    }
-}
-
-/// So many steps of Newton: a number enters a formula linearly, or nearly so.
-const ITERATIONS: usize = 8;
