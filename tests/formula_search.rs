@@ -9,7 +9,7 @@ use immaculate::number::{Field, RandomRounding as Number};
 use immaculate::oracle::case::{self, Expected};
 use immaculate::oracle::check::{Report, Selection, check};
 use immaculate::oracle::diagnose::Diagnosis;
-use immaculate::oracle::formula::{Formulas, unlike_the_equations};
+use immaculate::oracle::formula::{ComputedFormulas, unlike_the_equations};
 use immaculate::oracle::problem::ProblemFile;
 use immaculate::oracle::setup::Setup;
 use immaculate::oracle::subject::{Answer, Broken, Level, Planted, Ready, Subject};
@@ -62,7 +62,7 @@ fn verdict(edit: fn(&mut Setup<Number>), cases: &[&str]) -> Report {
 fn computed(edit: fn(&mut Setup<Number>), cases: &[&str]) -> Vec<String> {
     match verdict(edit, cases).diagnosis {
         Diagnosis::InParts {
-            formulas: Formulas { found, .. },
+            formulas: ComputedFormulas { found, .. },
             ..
         } => found
             .into_iter()

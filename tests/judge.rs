@@ -10,7 +10,7 @@ use immaculate::number::RandomRounding;
 use immaculate::oracle::case::{self, Case as Published, Expected};
 use immaculate::oracle::check::{CaseReport, Outcome, Report, Selection, check};
 use immaculate::oracle::diagnose::{Diagnosis, Evidence, Share, diagnose};
-use immaculate::oracle::formula::Formulas;
+use immaculate::oracle::formula::ComputedFormulas;
 use immaculate::oracle::judge::{Case, Finding, Judged, Judgement, LIMIT, Place, Reference};
 use immaculate::oracle::noise::spread;
 use immaculate::oracle::problem::ProblemFile;
@@ -469,7 +469,7 @@ fn what_a_form_explains_is_no_fault_beside_a_mistake() {
     let in_parts = |unexplained: Vec<String>| Diagnosis::InParts {
         parts: pair.map(part).to_vec(),
         unexplained,
-        formulas: Formulas::default(),
+        formulas: ComputedFormulas::default(),
         of: 2,
         pairs: true,
     };

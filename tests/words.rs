@@ -13,7 +13,7 @@ use immaculate::oracle::case::{self, BadCase};
 use immaculate::oracle::certify::Certified;
 use immaculate::oracle::check::{CaseReport, Outcome, Report};
 use immaculate::oracle::diagnose::{Diagnosis, Share};
-use immaculate::oracle::formula::{Formulas, Found};
+use immaculate::oracle::formula::{ComputedFormula, ComputedFormulas};
 use immaculate::oracle::invalid::{Class, Invalid};
 use immaculate::oracle::judge::{Finding, Judged, Judgement, OwnError};
 use immaculate::oracle::observation::{Discrepancy, Observation, SingleInput};
@@ -110,7 +110,7 @@ fn every_kind_of_diagnosis() {
         Diagnosis::InParts {
             parts: Vec::new(),
             unexplained: vec!["case-1".into()],
-            formulas: Formulas::default(),
+            formulas: ComputedFormulas::default(),
             of: 1,
             pairs: false,
         },
@@ -297,15 +297,15 @@ fn in_parts(parts: &[(&[&'static Variant], usize)], unexplained: usize) -> Diagn
     Diagnosis::InParts {
         parts: parts.iter().map(part).collect(),
         unexplained: (1..=unexplained).map(|number| format!("case-{number}")).collect(),
-        formulas: Formulas::default(),
+        formulas: ComputedFormulas::default(),
         of: unexplained + parts.iter().map(|(_, cases)| cases).sum::<usize>(),
         pairs: true,
     }
 }
 
 /// Formulas that explain all, one everywhere and one at some values only.
-fn formulas() -> Formulas {
-    let found = |quantity, computed: &str, right: &str, condition: Option<&str>| Found {
+fn formulas() -> ComputedFormulas {
+    let found = |quantity, computed: &str, right: &str, condition: Option<&str>| ComputedFormula {
         quantity,
         filters: vec!["kalman".into()],
         computed: computed.into(),
@@ -314,7 +314,7 @@ fn formulas() -> Formulas {
         of: 12,
         condition: condition.map(str::to_owned),
     };
-    Formulas {
+    ComputedFormulas {
         found: vec![
             found(
                 Gain,

@@ -5,7 +5,7 @@
 use super::{Done, Refusal, json_text, read_file};
 use clap::Args;
 use immaculate::oracle::certify::{certified_as_far_as_it_goes, certified_decimals};
-use immaculate::oracle::check::convention;
+use immaculate::oracle::check::{NotMade, convention};
 use immaculate::oracle::csv;
 use immaculate::oracle::invalid::Invalid;
 use immaculate::oracle::problem::ProblemFile;
@@ -77,7 +77,12 @@ fn declared(conventions: &[String]) -> Result<Vec<&'static str>, Refusal> {
                 "--convention {given}: needs a value, as in --convention first_step=predicted"
             )));
         };
-        variants.extend(convention(key, value).map_err(Refusal::request)?);
+        variants.extend(convention(key, value).map_err(|error| match error {
+            NotMade::Convention { known, .. } => {
+                Refusal::Request(format!("there is no convention `{key}`: {value:?}; known are {known}"))
+            }
+            error => Refusal::request(error),
+        })?);
     }
     Ok(variants)
 }

@@ -53,7 +53,7 @@ pub enum NotMade {
     #[error("{0}")]
     Subject(#[from] Broken),
     /// A convention that is not known.
-    #[error("there is no convention `{key}`: {value:?}; known are {known}")]
+    #[error("the program declares `{key}`: {value:?}; known are {known}")]
     Convention {
         /// Its key.
         key: String,

@@ -8,7 +8,7 @@
 //! where enough is shown, mistakes in different equations are independent. Where too little is shown for that, all pairs are tried. Where
 //! only some filters of a program are wrong, they are taken by themselves.
 
-use super::formula::{self, Formulas};
+use super::formula::{self, ComputedFormulas};
 use super::invalid::Invalid;
 use super::judge::{Case, Place};
 use super::setup::Setup;
@@ -74,7 +74,7 @@ pub enum Diagnosis {
         /// The number of faulty cases.
         of: usize,
         /// What was computed in these instead.
-        formulas: Formulas,
+        formulas: ComputedFormulas,
         /// Whether all pairs were tried, too; for long runs they are too many.
         pairs: bool,
     },
@@ -376,7 +376,7 @@ impl<'a> Search<'a> {
             .collect();
         let is_open = |piece: &&Evidence| !piece.is_faulty || unexplained.contains(&piece.case.problem.id);
         let formulas = match of_formulas.filter(|_| !unexplained.is_empty()) {
-            None => Formulas::default(),
+            None => ComputedFormulas::default(),
             Some(evidence) => {
                 let rest: Vec<Evidence> = evidence.iter().filter(is_open).cloned().collect();
                 formula::find(&rest, &self.conventions)?

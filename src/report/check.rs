@@ -11,7 +11,7 @@ use crate::imm::Quantity;
 use crate::oracle::behaviour::Unasked;
 use crate::oracle::check::{CaseReport, Outcome, Report};
 use crate::oracle::diagnose::{Diagnosis, Share};
-use crate::oracle::formula::Formulas;
+use crate::oracle::formula::ComputedFormulas;
 use crate::oracle::judge::{Finding, Judged};
 use crate::oracle::subject::Broken;
 use crate::oracle::variant::{Kind, Variant};
@@ -296,7 +296,7 @@ pub(super) fn diagnosis(diagnosis: &Diagnosis) -> String {
 }
 
 /// What is said where no one thing explains all.
-fn in_parts(parts: &[Share], unexplained: &[String], formulas: &Formulas, of: usize, pairs: bool) -> String {
+fn in_parts(parts: &[Share], unexplained: &[String], formulas: &ComputedFormulas, of: usize, pairs: bool) -> String {
     let mut text = String::from(match (unexplained.is_empty(), formulas.is_complete) {
         (true, _) => "\nMOST LIKELY, IN DIFFERENT CASES\n",
         (false, true) => "\nCAUSE  What no entry of the catalogue explains, the formulas below do.\n",

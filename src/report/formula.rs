@@ -1,16 +1,16 @@
 //! The formulas that a program computed in place of right ones, for people and as JSON.
 
 use super::wrapped;
-use crate::oracle::formula::{Explanation, Formulas, Found, short};
+use crate::oracle::formula::{ComputedFormula, ComputedFormulas, Explanation, short};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-pub(super) fn text(formulas: &Formulas) -> String {
+pub(super) fn text(formulas: &ComputedFormulas) -> String {
     formulas.found.iter().map(one).collect()
 }
 
 /// A paragraph: where, what was computed, and what should have been.
-fn one(found: &Found) -> String {
+fn one(found: &ComputedFormula) -> String {
     let mut text = format!("\nCOMPUTED  {}, {}", found.quantity.name(), found.filters.join(", "));
     if let Some(condition) = &found.condition {
         let _ = write!(text, ", {condition}");
@@ -26,8 +26,8 @@ fn one(found: &Found) -> String {
     text
 }
 
-pub(super) fn json(formulas: &Formulas) -> Value {
-    let of_one = |found: &Found| {
+pub(super) fn json(formulas: &ComputedFormulas) -> Value {
+    let of_one = |found: &ComputedFormula| {
         json!({
             "quantity": found.quantity.name(),
             "filters": found.filters,

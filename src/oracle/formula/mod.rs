@@ -10,8 +10,8 @@
 //! ```
 //!
 //! Reading order: `tree`, `print` and `value` say what a formula is; `instance` where its numbers come from; `right` has the right ones,
-//! `edit` what is near them, `search` finds the one that was computed, and `condition` where; `solve` finds the input that would explain what
-//! is shown, and `explain` puts numbers into the right formula.
+//! `edit` what is near them, `search` finds the one that was computed, `fit` its number, and `condition` where; `solve` finds the input
+//! that would explain what is shown, and `explain` puts numbers into the right formula.
 
 mod condition;
 mod edit;
@@ -29,4 +29,4 @@ pub use explain::Explanation;
 pub(super) use explain::explain;
 pub(crate) use explain::short;
 pub(super) use search::find;
-pub use search::{Formulas, Found, unlike_the_equations};
+pub use search::{ComputedFormula, ComputedFormulas, unlike_the_equations};

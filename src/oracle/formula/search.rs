@@ -25,7 +25,7 @@ use rayon::prelude::*;
 
 /// What a program computed for a quantity.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Found {
+pub struct ComputedFormula {
     /// The quantity.
     pub quantity: Quantity,
     /// The filters for which it was computed so.
@@ -44,9 +44,9 @@ pub struct Found {
 
 /// What a program computed in place of right formulas.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Formulas {
+pub struct ComputedFormulas {
     /// Quantity by quantity, in the order in which they are computed.
-    pub found: Vec<Found>,
+    pub found: Vec<ComputedFormula>,
     /// Whether every faulty value is explained, and from values that are all shown: from hidden ones much can be explained.
     pub is_complete: bool,
 }
@@ -68,7 +68,7 @@ const CANDIDATE_RUNS: u64 = 4;
 /// # Errors
 ///
 /// [`Invalid`] for a problem that cannot be set up.
-pub fn find(evidence: &[Evidence], conventions: &[&str]) -> Result<Formulas, Invalid> {
+pub fn find(evidence: &[Evidence], conventions: &[&str]) -> Result<ComputedFormulas, Invalid> {
     let runs: Vec<Along> = evidence
         .iter()
         .filter(|piece| !is_told_by_its_beginning(piece, evidence))
@@ -87,11 +87,11 @@ pub fn find(evidence: &[Evidence], conventions: &[&str]) -> Result<Formulas, Inv
     let mut fitting: Vec<Vec<Fitting>> = groups.iter().map(Group::fitting).collect();
     prefer_shared(&mut fitting);
     let pairs = groups.iter().zip(&fitting);
-    let found: Vec<Found> = pairs.filter_map(|(group, fitting)| group.explained(fitting)).collect();
+    let found: Vec<ComputedFormula> = pairs.filter_map(|(group, fitting)| group.explained(fitting)).collect();
     let is_complete = found.len() == groups.len()
         && found.iter().all(|found| found.explains == found.of)
         && groups.iter().all(Group::is_of_shown_values);
-    Ok(Formulas {
+    Ok(ComputedFormulas {
         found: merged(found),
         is_complete,
     })
@@ -124,10 +124,10 @@ fn prefer_shared(fitting: &mut [Vec<Fitting>]) {
 const SHARED: f64 = 0.6;
 
 /// One entry for what was computed alike by several filters.
-fn merged(all: Vec<Found>) -> Vec<Found> {
-    let mut merged: Vec<Found> = Vec::new();
+fn merged(all: Vec<ComputedFormula>) -> Vec<ComputedFormula> {
+    let mut merged: Vec<ComputedFormula> = Vec::new();
     for mut one in all {
-        let is_alike = |other: &&mut Found| {
+        let is_alike = |other: &&mut ComputedFormula| {
             (other.quantity, &other.computed, &other.right, &other.condition)
                 == (one.quantity, &one.computed, &one.right, &one.condition)
         };
@@ -288,7 +288,7 @@ impl Group<'_> {
     }
 
     /// The nearest formula that explains all; else the input that does, or what explains some.
-    fn explained(&self, fitting: &[Fitting]) -> Option<Found> {
+    fn explained(&self, fitting: &[Fitting]) -> Option<ComputedFormula> {
         // What explains less than half is chance, or has no one cause.
         let found = nearest(fitting).map(|chosen| self.found(chosen));
         let found = found.filter(|found| 2 * found.explains >= found.of);
@@ -299,7 +299,7 @@ impl Group<'_> {
     }
 
     /// What is said of the chosen one, counted over all values.
-    fn found(&self, chosen: &Fitting) -> Found {
+    fn found(&self, chosen: &Fitting) -> ComputedFormula {
         let with = chosen.candidate.with(chosen.number);
         let holds = |at: &&Instance| holds(&chosen.candidate.tree, with, at);
         let explains = self.instances(true).filter(|at| holds(at) == Some(true)).count();
@@ -309,7 +309,7 @@ impl Group<'_> {
         let mut filters: Vec<String> = wrong.iter().map(|at| at.filter_name()).collect();
         filters.sort_unstable();
         filters.dedup();
-        Found {
+        ComputedFormula {
             quantity: self.quantity,
             filters,
             computed: chosen.candidate.text(chosen.number),

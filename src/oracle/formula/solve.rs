@@ -1,12 +1,12 @@
 //! The input that would explain what is shown: a noise, say, that a program made otherwise than it was told.
 //!
-//! After this file the reader knows when an input is solved for. It must stand alone as a term of the right formula; then what is left of the
-//! shown value without it is the input that was used. It is believed where it is the same at all faulty values of a mode, and there are
-//! several.
+//! After this file the reader knows when an input is solved for. It must stand alone as a term of the right formula; then what is left of
+//! the shown value without it is the input that was used. It is believed where it is the same at all faulty values of a mode, and there
+//! are several.
 
 use super::instance::Instance;
 use super::right::right;
-use super::search::Found;
+use super::search::ComputedFormula;
 use super::tree::{Given, Leaf, Of, Operation, Tree, Value};
 use super::value::{With, by_rows};
 use crate::oracle::judge::LIMIT;
@@ -18,12 +18,12 @@ const AGREEING: usize = 3;
 const INPUTS: [Given; 2] = [Given::MotionNoise, Given::MeasurementNoise];
 
 /// What a group of faulty values would be explained by: the input, and its numbers by rows in the first faulty mode.
-pub(super) fn solved(wrong: &[&Instance]) -> Option<Found> {
+pub(super) fn solved(wrong: &[&Instance]) -> Option<ComputedFormula> {
     let form = right(wrong.first()?).into_iter().next()?;
     INPUTS.into_iter().find_map(|input| of_input(&form, input, wrong))
 }
 
-fn of_input(form: &Tree, input: Given, wrong: &[&Instance]) -> Option<Found> {
+fn of_input(form: &Tree, input: Given, wrong: &[&Instance]) -> Option<ComputedFormula> {
     let leaf = Leaf {
         value: Value::Given(input),
         of: Of::Itself,
@@ -46,7 +46,7 @@ fn of_input(form: &Tree, input: Given, wrong: &[&Instance]) -> Option<Found> {
     } else {
         String::new()
     };
-    Some(Found {
+    Some(ComputedFormula {
         quantity: wrong[0].place.1,
         filters: vec![wrong[0].filter_name()],
         computed: format!("{}, where {name} = [{}]{of_mode}", form.text(None), rows.join("; ")),
