@@ -90,14 +90,14 @@ pub struct Share {
 }
 
 impl Diagnosis {
-    /// Whether something explains every faulty case.
+    /// Whether the catalogue explains every faulty case.
+    fn is_named(&self) -> bool {
+        !matches!(self, Self::InParts { unexplained, .. } if !unexplained.is_empty())
+    }
+
+    /// Whether it does, or formulas do.
     fn is_known(&self) -> bool {
-        match self {
-            Self::InParts {
-                unexplained, formulas, ..
-            } => unexplained.is_empty() || formulas.is_complete,
-            _ => true,
-        }
+        self.is_named() || matches!(self, Self::InParts { formulas, .. } if formulas.is_complete)
     }
 
     /// Whether all that was found is forms and conventions, which are not wrong.
@@ -129,19 +129,17 @@ pub fn diagnose(evidence: &[Evidence], conventions: &[&str]) -> Result<Diagnosis
         return Ok(found);
     }
     let by_filter = by_filter(evidence, conventions)?;
-    let is_known = |(_, found): &(String, Diagnosis)| found.is_known();
-    if !by_filter.is_empty() && by_filter.iter().all(is_known) {
+    if !by_filter.is_empty() && by_filter.iter().all(|(_, found)| found.is_named()) {
         return Ok(Diagnosis::ByFilter(by_filter));
     }
-    let in_parts = search.in_parts(Some(evidence))?;
+    let in_parts = search.in_parts(evidence)?;
     if in_parts.is_known() {
         return Ok(in_parts);
     }
     if let Some(found) = search.pairs()? {
         return Ok(found);
     }
-    let has_formulas = matches!(&in_parts, Diagnosis::InParts { formulas, .. } if !formulas.found.is_empty());
-    if !has_formulas && by_filter.iter().any(is_known) {
+    if by_filter.iter().any(|(_, found)| found.is_known()) {
         return Ok(Diagnosis::ByFilter(by_filter));
     }
     Ok(in_parts)
@@ -173,7 +171,7 @@ fn by_filter(evidence: &[Evidence], conventions: &[&str]) -> Result<Vec<(String,
         let search = Search::new(&own, conventions)?;
         let diagnosis = match search.quickly()? {
             Some(diagnosis) => diagnosis,
-            None => search.in_parts(None)?,
+            None => search.in_parts(&own)?,
         };
         found.push((name, diagnosis));
     }
@@ -356,8 +354,8 @@ impl<'a> Search<'a> {
     }
 
     /// What explains most faulty cases and no right case refutes; then what does of the rest.
-    /// And where evidence is given, the formulas that were computed in what nothing in the catalogue explains.
-    fn in_parts(&self, of_formulas: Option<&[Evidence]>) -> Result<Diagnosis, Invalid> {
+    /// And the formulas that were computed in what nothing in the catalogue explains.
+    fn in_parts(&self, evidence: &[Evidence]) -> Result<Diagnosis, Invalid> {
         let is_whole = |(evidence, _): &&Piece| evidence.is_faulty && !evidence.is_beginning;
         let mut open: Vec<&Piece> = self.evidence.iter().filter(is_whole).collect();
         let of = open.len();
@@ -375,12 +373,11 @@ impl<'a> Search<'a> {
             .map(|(evidence, _)| evidence.case.problem.id.clone())
             .collect();
         let is_open = |piece: &&Evidence| !piece.is_faulty || unexplained.contains(&piece.case.problem.id);
-        let formulas = match of_formulas.filter(|_| !unexplained.is_empty()) {
-            None => ComputedFormulas::default(),
-            Some(evidence) => {
-                let rest: Vec<Evidence> = evidence.iter().filter(is_open).cloned().collect();
-                formula::find(&rest, &self.conventions)?
-            }
+        let rest: Vec<Evidence> = evidence.iter().filter(is_open).cloned().collect();
+        let formulas = if unexplained.is_empty() {
+            ComputedFormulas::default()
+        } else {
+            formula::find(&rest, &self.conventions)?
         };
         Ok(Diagnosis::InParts {
             parts,
