@@ -219,10 +219,11 @@ filterpy() {
     # The cubature filter measures the points that it propagated.
     expect 1 "FAULT innovation_covariance" "MOST LIKELY" "$stale" -- --case update --case rule -- "$@" cubature-3
     # Extended filters: alone they are right. In an IMM there is what is in all of them; besides, angles in the state are averaged as
-    # numbers, and another transition matrix acts a step late, which has no name.
+    # numbers, and another transition matrix acts a step late, which has no name and is found as a formula.
     expect 0 "RIGHT on what was judged: FilterPy" -- --case extended.one-mode --case exact.measurement.extended -- "$@" extended
     expect 1 "FAULT predicted_mode_probabilities" "explains 10 of the 14 cases" "$combined" "(last-likelihood-used-again; mistake)" \
         "(vanishing-likelihoods-ignored; mistake)" "(state-angles-as-numbers; mistake)" "Unexplained: changing.extended" \
+        "previous transitionᵀ · previous mode_probabilities" \
         "extended.unreachable: step 1: ValueError: array must not contain infs or NaNs" -- -- "$@" extended
     # Its own class cannot be called by its own IMM.
     expect 1 "STOPPED" "TypeError: unsupported operand" -- --case extended.generic -- "$@" extended --as-it-is
