@@ -3,9 +3,9 @@
 % trace is that of `immaculate cases copy`, by jsondecode. A value is wrong if its error is more than 100 times the rounding noise, as
 % `immaculate check` counts it: the noise is at least a unit roundoff of the value's scale and of the value itself.
 function sentences = compare(problem, trace, answer)
-  steps = cells(trace.steps);
-  scales = cells(trace.scale);
-  noises = cells(trace.noise);
+  steps = immaculate.cells(trace.steps);
+  scales = immaculate.cells(trace.scale);
+  noises = immaculate.cells(trace.noise);
   list = quantities();
   sentences = {};
   is_shown = false;
@@ -52,7 +52,7 @@ function [found, is_there] = values(step, list, mode_count)
   is_there = false(size(found));
   modes = {};
   if isfield(step, 'modes')
-    modes = cells(step.modes);
+    modes = immaculate.cells(step.modes);
   end
   for q = 1:size(list, 1)
     holders = {step};
@@ -123,11 +123,5 @@ function rows = angles(problem, k, quantity)
   elseif strcmp(quantity, 'predicted_measurement') && ~strcmp(problem.filter.kind, 'converted')
     now = immaculate.step_of(problem, k);
     rows = find(now.measurement.is_angle);
-  end
-end
-
-function list = cells(list)
-  if isstruct(list)
-    list = num2cell(list);
   end
 end

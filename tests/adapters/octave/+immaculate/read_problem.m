@@ -6,13 +6,13 @@
 % What holds in a step, and which entries of z are there, says immaculate.step_of.
 function problem = read_problem(file)
   problem = jsondecode(fileread(file));
-  problem.modes = cells(problem.modes);
-  problem.initial.modes = cells(problem.initial.modes);
-  problem.measurements = cells(problem.measurements);
+  problem.modes = immaculate.cells(problem.modes);
+  problem.initial.modes = immaculate.cells(problem.initial.modes);
+  problem.measurements = immaculate.cells(problem.measurements);
   if ~isfield(problem, 'sensors')
     problem.sensors = {};
   end
-  problem.sensors = cells(problem.sensors);
+  problem.sensors = immaculate.cells(problem.sensors);
   if ~isfield(problem, 'conventions')
     problem.conventions = struct();
   end
@@ -20,12 +20,6 @@ function problem = read_problem(file)
   problem.measurement = with_angles(problem.measurement);
   for s = 1:numel(problem.sensors)
     problem.sensors{s}.measurement = with_angles(problem.sensors{s}.measurement);
-  end
-end
-
-function list = cells(list)
-  if isstruct(list)
-    list = num2cell(list);
   end
 end
 
