@@ -12,7 +12,7 @@ use super::formula::{self, ComputedFormulas};
 use super::invalid::Invalid;
 use super::judge::{Case, Place};
 use super::setup::Setup;
-use super::variant::{self, Kind, Variant, catalogue};
+use super::variant::{Kind, Variant, catalogue};
 use crate::imm::Quantity;
 use crate::number::RandomRounding;
 use rayon::prelude::*;
@@ -132,17 +132,39 @@ pub fn diagnose(evidence: &[Evidence], conventions: &[&str]) -> Result<Diagnosis
     if !by_filter.is_empty() && by_filter.iter().all(|(_, found)| found.is_named()) {
         return Ok(Diagnosis::ByFilter(by_filter));
     }
-    let in_parts = search.in_parts(evidence)?;
+    let in_parts = with_formulas(search.in_parts()?, evidence, conventions)?;
     if in_parts.is_known() {
         return Ok(in_parts);
     }
     if let Some(found) = search.pairs()? {
         return Ok(found);
     }
+    let with_its_formulas = |(name, found): (String, Diagnosis)| {
+        let found = with_formulas(found, &of_filter(evidence, &name), conventions)?;
+        Ok((name, found))
+    };
+    let by_filter: Vec<(String, Diagnosis)> = by_filter
+        .into_iter()
+        .map(with_its_formulas)
+        .collect::<Result<_, Invalid>>()?;
     if by_filter.iter().any(|(_, found)| found.is_known()) {
         return Ok(Diagnosis::ByFilter(by_filter));
     }
     Ok(in_parts)
+}
+
+/// What the catalogue explains in parts, with the formulas that were computed in what it does not explain.
+fn with_formulas(mut found: Diagnosis, evidence: &[Evidence], conventions: &[&str]) -> Result<Diagnosis, Invalid> {
+    if let Diagnosis::InParts {
+        unexplained, formulas, ..
+    } = &mut found
+        && !unexplained.is_empty()
+    {
+        let is_open = |piece: &&Evidence| !piece.is_faulty || unexplained.contains(&piece.case.problem.id);
+        let rest: Vec<Evidence> = evidence.iter().filter(is_open).cloned().collect();
+        *formulas = formula::find(&rest, conventions)?;
+    }
+    Ok(found)
 }
 
 /// The same without pairs and parts, which take long: where the answers themselves say already what is wrong.
@@ -157,8 +179,7 @@ pub(super) fn diagnose_quickly(evidence: &[Evidence], conventions: &[&str]) -> R
 
 /// The evidence filter by filter; nothing where there is one filter only.
 fn by_filter(evidence: &[Evidence], conventions: &[&str]) -> Result<Vec<(String, Diagnosis)>, Invalid> {
-    let name_of = |evidence: &Evidence| evidence.case.problem.kinds().join(" + ");
-    let mut names: Vec<String> = evidence.iter().map(name_of).collect();
+    let mut names: Vec<String> = evidence.iter().map(name_of_filter).collect();
     names.sort_unstable();
     names.dedup();
     let mut found = Vec::new();
@@ -166,16 +187,25 @@ fn by_filter(evidence: &[Evidence], conventions: &[&str]) -> Result<Vec<(String,
         return Ok(found);
     }
     for name in names {
-        let of_filter = |evidence: &&Evidence| name_of(evidence) == name;
-        let own: Vec<Evidence> = evidence.iter().filter(of_filter).cloned().collect();
+        let own = of_filter(evidence, &name);
         let search = Search::new(&own, conventions)?;
         let diagnosis = match search.quickly()? {
             Some(diagnosis) => diagnosis,
-            None => search.in_parts(&own)?,
+            None => search.in_parts()?,
         };
         found.push((name, diagnosis));
     }
     Ok(found)
+}
+
+fn name_of_filter(evidence: &Evidence) -> String {
+    evidence.case.problem.kinds().join(" + ")
+}
+
+/// The evidence of one filter.
+fn of_filter<'a>(evidence: &[Evidence<'a>], name: &str) -> Vec<Evidence<'a>> {
+    let is_own = |evidence: &&Evidence| name_of_filter(evidence) == name;
+    evidence.iter().filter(is_own).cloned().collect()
 }
 
 /// Evidence with its problem, which says where a variant applies.
@@ -196,13 +226,8 @@ impl<'a> Search<'a> {
     fn new(evidence: &'a [Evidence<'a>], conventions: &[&'a str]) -> Result<Self, Invalid> {
         let mut order: Vec<&Evidence> = evidence.iter().collect();
         order.sort_by_key(|evidence| (!evidence.is_faulty, evidence.case.shown.count()));
-        let with_problem = |evidence: &'a Evidence<'a>| {
-            let mut setup = evidence.case.problem.setup_in_doubles()?;
-            for id in conventions {
-                variant::apply(id, &mut setup);
-            }
-            Ok((evidence, setup))
-        };
+        let with_problem =
+            |evidence: &'a Evidence<'a>| Ok((evidence, evidence.case.problem.setup_in_doubles()?.varied(conventions)));
         let is_undeclared = |variant: &&Variant| !conventions.contains(&variant.id.as_str());
         Ok(Self {
             evidence: order.into_iter().map(with_problem).collect::<Result<_, Invalid>>()?,
@@ -354,8 +379,7 @@ impl<'a> Search<'a> {
     }
 
     /// What explains most faulty cases and no right case refutes; then what does of the rest.
-    /// And the formulas that were computed in what nothing in the catalogue explains.
-    fn in_parts(&self, evidence: &[Evidence]) -> Result<Diagnosis, Invalid> {
+    fn in_parts(&self) -> Result<Diagnosis, Invalid> {
         let is_whole = |(evidence, _): &&Piece| evidence.is_faulty && !evidence.is_beginning;
         let mut open: Vec<&Piece> = self.evidence.iter().filter(is_whole).collect();
         let of = open.len();
@@ -372,17 +396,10 @@ impl<'a> Search<'a> {
             .iter()
             .map(|(evidence, _)| evidence.case.problem.id.clone())
             .collect();
-        let is_open = |piece: &&Evidence| !piece.is_faulty || unexplained.contains(&piece.case.problem.id);
-        let rest: Vec<Evidence> = evidence.iter().filter(is_open).cloned().collect();
-        let formulas = if unexplained.is_empty() {
-            ComputedFormulas::default()
-        } else {
-            formula::find(&rest, &self.conventions)?
-        };
         Ok(Diagnosis::InParts {
             parts,
             unexplained,
-            formulas,
+            formulas: ComputedFormulas::default(),
             of,
             pairs: self.has_time_for_pairs(),
         })

@@ -142,6 +142,9 @@ pub(super) fn explain_first_faults(
 ) -> Result<(), Invalid> {
     let mut seen = BTreeSet::new();
     for of in answered {
+        if cases[of.index].first_fault().is_none() {
+            continue;
+        }
         let evidence = evidence_of(&cases[of.index], of.problem, &of.shown, &of.reference, ready);
         let judgement = &mut cases[of.index].judgement;
         let values = judgement.iter_mut().flat_map(|judgement| &mut judgement.values);

@@ -9,10 +9,8 @@ use super::noise;
 use super::problem::{MeasurementAt, ProblemFile};
 use super::run::Triangle;
 use super::scale::scales;
-use super::setup::Setup;
 use super::subject::Precision;
 use super::trace::Trace;
-use super::variant;
 use crate::imm::Quantity;
 use crate::number::RandomRounding;
 
@@ -79,7 +77,7 @@ pub(super) struct Run<'a> {
 impl Run<'_> {
     /// The values in doubles, and the steps that could not be evaluated.
     pub(super) fn values(&self) -> Result<(Trace, Vec<String>), Invalid> {
-        let setup = self.varied(self.problem.setup_in_doubles()?);
+        let setup = self.problem.setup_in_doubles()?.varied(self.variants);
         let computed = match self.shown {
             Some(shown) => setup.run_along(shown, RandomRounding::exact, Triangle::Lower),
             None => setup.run(),
@@ -88,18 +86,11 @@ impl Run<'_> {
         Ok((computed.in_doubles(), failures))
     }
 
-    fn varied(&self, mut setup: Setup<RandomRounding>) -> Setup<RandomRounding> {
-        for id in self.variants {
-            variant::apply(id, &mut setup);
-        }
-        setup
-    }
-
     /// How far so many runs with random rounding come from the values.
     pub(super) fn noise(&self, values: &Trace, runs: u64) -> Result<Trace, Invalid> {
         noise::spread(values, self.precision.unit_roundoff(), runs, |number| {
             // The inputs are perturbed, too, so each run has a problem of its own.
-            let setup = self.varied(self.problem.setup_perturbed()?);
+            let setup = self.problem.setup_perturbed()?.varied(self.variants);
             let triangle = if number % 2 == 0 {
                 Triangle::Lower
             } else {

@@ -41,6 +41,15 @@ impl<T: Real> Setup<T> {
         Imm::unchecked(self.problem.clone(), self.equations.clone(), &self.initial)
     }
 
+    /// The same with variants of the catalogue, one after the other.
+    #[must_use]
+    pub fn varied(mut self, variants: &[impl AsRef<str>]) -> Self {
+        for id in variants {
+            variant::apply(id.as_ref(), &mut self);
+        }
+        self
+    }
+
     /// The problem, and those of the steps in which it is another.
     pub(super) fn problems(&self) -> impl Iterator<Item = &Problem<T, Dyn, Dyn>> {
         std::iter::once(&self.problem).chain(self.changes.values())
@@ -150,7 +159,7 @@ impl ProblemFile {
             sensor: self.sensor(0, &functions, number, interval)?,
             measurement_noise: matrix(&self.noise, number),
         };
-        let mut setup = Setup {
+        let setup = Setup {
             changes: self.changes(&problem, &functions, number, interval)?,
             problem,
             equations: Equations::standard(),
@@ -160,10 +169,7 @@ impl ProblemFile {
             },
             measurements: self.measurements.iter().map(of_step).collect(),
         };
-        for id in &self.declared {
-            variant::apply(id, &mut setup);
-        }
-        Ok(setup)
+        Ok(setup.varied(&self.declared))
     }
 
     /// The modes in a step of this length.

@@ -6,7 +6,6 @@
 use super::invalid::Invalid;
 use super::problem::{FORMAT, ProblemFile};
 use super::trace::Trace;
-use super::variant;
 use crate::file::shortened;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -409,10 +408,7 @@ impl Subject for Planted {
 impl Planted {
     /// Runs a problem in doubles with the variants; what is shown of it.
     fn planted(&self, problem: &ProblemFile) -> Result<Answer, Invalid> {
-        let mut setup = problem.setup_in_doubles()?;
-        for id in &self.variants {
-            variant::apply(id, &mut setup);
-        }
+        let setup = problem.setup_in_doubles()?.varied(&self.variants);
         let computed = setup.run();
         let values = computed.in_doubles();
         let mut trace = Trace::empty(&setup.dimensions());

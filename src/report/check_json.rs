@@ -103,7 +103,7 @@ fn value_json(value: &Judged, equation: &str, names: &dyn Fn(&[Quantity]) -> Vec
             "error_in_units": own.size,
         })),
         "hidden": names(&value.hidden),
-        "explained": value.explained.as_ref().map(super::formula::explained_json),
+        "explained": value.explained,
     })
 }
 

@@ -66,14 +66,3 @@ pub(super) fn explained(explanation: &Explanation) -> String {
         )
     )
 }
-
-pub(super) fn explained_json(explanation: &Explanation) -> Value {
-    let Explanation {
-        equation,
-        numbers,
-        gives,
-        shown,
-        term,
-    } = explanation;
-    json!({ "equation": equation, "numbers": numbers, "gives": gives, "shown": shown, "term": term })
-}

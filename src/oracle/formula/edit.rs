@@ -60,7 +60,7 @@ pub(super) struct Names {
     all: Vec<(Leaf, Shape)>,
 }
 
-const OF: [Of; 10] = [
+const OF: [Of; 9] = [
     Of::Itself,
     Of::Each,
     Of::First,
@@ -70,7 +70,6 @@ const OF: [Of; 10] = [
     Of::Right,
     Of::EachRight,
     Of::EachRightBefore,
-    Of::AtFirstStep,
 ];
 
 const GIVEN: [Given; 14] = [
@@ -118,7 +117,7 @@ impl Names {
             .into_iter()
             .flat_map(|quantity| OF.map(|of| (quantity, of)));
         let traced = traced
-            .filter(|(quantity, of)| is_there(*quantity, *of) && *of != Of::AtFirstStep)
+            .filter(|(quantity, of)| is_there(*quantity, *of))
             .map(|(quantity, of)| (Value::Traced(quantity), of));
         let given = GIVEN.into_iter().flat_map(|given| {
             [Of::Itself, Of::First, Of::Last, Of::Before, Of::AtFirstStep].map(|of| (Value::Given(given), of))
@@ -314,9 +313,9 @@ fn edits(tree: &Tree, names: &Names, at: &Instance) -> Vec<Candidate> {
             let everywhere = tree.with_all(leaf, &Tree::Leaf(other));
             found.push(Candidate::new(1.0 + distance(leaf, other), everywhere));
         }
-        for (index, operation) in UNARY.into_iter().enumerate() {
+        for (cost, operation) in unary() {
             let everywhere = tree.with_all(leaf, &Tree::Leaf(leaf).unary(operation));
-            found.push(Candidate::new(1.1 + 0.02 * small(index), everywhere));
+            found.push(Candidate::new(cost, everywhere));
         }
     }
     for (way, part) in tree.places() {
@@ -330,9 +329,14 @@ fn edits(tree: &Tree, names: &Names, at: &Instance) -> Vec<Candidate> {
     found
 }
 
-#[allow(clippy::cast_precision_loss, reason = "an index into a short list")]
-fn small(index: usize) -> f64 {
-    index as f64
+/// What one value can be turned into, with what it costs: what stands first in the list is done more often.
+fn unary() -> impl Iterator<Item = (f64, Operation)> {
+    #[allow(clippy::cast_precision_loss, reason = "an index into a short list")]
+    let cost = |index: usize| 1.1 + 0.02 * index as f64;
+    UNARY
+        .into_iter()
+        .enumerate()
+        .map(move |(index, operation)| (cost(index), operation))
 }
 
 /// The leaves that stand more than once in a formula.
@@ -410,9 +414,9 @@ fn structural(
     } else {
         0.1
     };
-    for (index, operation) in UNARY.into_iter().enumerate() {
+    for (cost, operation) in unary() {
         let new = part.clone().unary(operation);
-        found.push(Candidate::new(1.1 + 0.02 * small(index) + inside, place(&new)));
+        found.push(Candidate::new(cost + inside, place(&new)));
     }
 }
 

@@ -11,9 +11,10 @@ use super::value::{Term, With};
 use crate::oracle::diagnose::Evidence;
 use crate::oracle::invalid::Invalid;
 use crate::oracle::judge::Place;
+use serde::Serialize;
 
 /// An equation with numbers in it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Explanation {
     /// The equation by the names of the trace.
     pub equation: String,

@@ -20,7 +20,6 @@ use crate::oracle::noise::RUNS;
 use crate::oracle::problem::ProblemFile;
 use crate::oracle::run::run_in_doubles;
 use crate::oracle::subject::Precision;
-use crate::oracle::variant;
 use rayon::prelude::*;
 
 /// What a program computed for a quantity.
@@ -69,17 +68,12 @@ const CANDIDATE_RUNS: u64 = 4;
 ///
 /// [`Invalid`] for a problem that cannot be set up.
 pub fn find(evidence: &[Evidence], conventions: &[&str]) -> Result<ComputedFormulas, Invalid> {
-    let runs: Vec<Along> = evidence
-        .iter()
-        .filter(|piece| !is_told_by_its_beginning(piece, evidence))
-        .map(|piece| along(piece, conventions))
-        .collect::<Result<_, _>>()?;
+    let is_meant = |piece: &&Evidence| !is_told_by_its_beginning(piece, evidence);
+    let pieces: Vec<&Evidence> = evidence.iter().filter(is_meant).collect();
+    let runs = pieces.iter().map(|piece| along(piece, conventions));
+    let runs: Vec<Along> = runs.collect::<Result<_, _>>()?;
     let mut groups: Vec<Group> = Vec::new();
-    for (run, piece) in runs.iter().zip(
-        evidence
-            .iter()
-            .filter(|piece| !is_told_by_its_beginning(piece, evidence)),
-    ) {
+    for (run, piece) in runs.iter().zip(pieces) {
         collect(run, piece, conventions, &mut groups)?;
     }
     groups.sort_by_key(|group| group.quantity);
@@ -192,10 +186,7 @@ fn is_told_by_its_beginning(piece: &Evidence, evidence: &[Evidence]) -> bool {
 
 /// The right equations along a program's values.
 pub(super) fn along<'a>(piece: &Evidence<'a>, conventions: &[&str]) -> Result<Along<'a>, Invalid> {
-    let mut setup = piece.case.problem.setup_in_doubles()?;
-    for id in conventions {
-        variant::apply(id, &mut setup);
-    }
+    let setup = piece.case.problem.setup_in_doubles()?.varied(conventions);
     let (steps, computed) = setup.steps_along(piece.case.shown);
     Ok(Along {
         case: piece.case,
@@ -302,10 +293,10 @@ impl Group<'_> {
     fn found(&self, chosen: &Fitting) -> ComputedFormula {
         let with = chosen.candidate.with(chosen.number);
         let holds = |at: &&Instance| holds(&chosen.candidate.tree, with, at);
-        let explains = self.instances(true).filter(|at| holds(at) == Some(true)).count();
-        let is_elsewhere_too = !self.instances(false).any(|at| holds(&at) == Some(false));
-        let (wrong, right): (Vec<&Instance>, Vec<&Instance>) =
-            (self.instances(true).collect(), self.instances(false).collect());
+        let wrong: Vec<&Instance> = self.instances(true).collect();
+        let right: Vec<&Instance> = self.instances(false).collect();
+        let explains = wrong.iter().filter(|at| holds(at) == Some(true)).count();
+        let is_elsewhere_too = !right.iter().any(|at| holds(at) == Some(false));
         let mut filters: Vec<String> = wrong.iter().map(|at| at.filter_name()).collect();
         filters.sort_unstable();
         filters.dedup();
