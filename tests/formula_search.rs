@@ -113,6 +113,15 @@ fn an_inverse_that_was_forgotten_is_named() {
     assert_eq!(found, ["gain = cross_covariance"]);
 }
 
+/// Such gains make covariances that lose their symmetry and run away: what comes of a mistake does not hide it.
+#[test]
+fn a_mistake_is_named_though_rounding_grows_because_of_it() {
+    let wrong = |setup: &mut Setup<Number>| setup.equations.gain = |_, _, now, j| Ok(now.cross_covariances[j].clone());
+    let cases = ["steps.kalman", "missed.one"];
+    assert_eq!(computed(wrong, &cases), ["gain = cross_covariance"]);
+    assert_eq!(verdict(wrong, &cases).observations, []);
+}
+
 #[test]
 fn a_product_entry_by_entry_is_named() {
     let found = computed(

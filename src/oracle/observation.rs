@@ -108,7 +108,7 @@ pub(super) fn observe(
     if found.is_empty() {
         found.extend(single_input::found(answered, cases, precision, conventions)?);
     }
-    found.extend(symmetry::lost(answered, precision));
+    found.extend(symmetry::lost(answered, cases, precision));
     Ok(found)
 }
 

@@ -9,15 +9,18 @@ use super::judge::{LIMIT, Place};
 use super::observation::Observation;
 use super::run::Triangle;
 use super::subject::Precision;
+use super::verdict::CaseReport;
 use crate::imm::Quantity;
 
 /// The covariance whose asymmetry grows most, and the cases in which one's does.
 ///
-/// It grows where it is rounding at the first step and more than rounding at another, [`LIMIT`] times the noise each.
-pub(super) fn lost(answered: &[Answered], precision: Precision) -> Option<Observation> {
+/// It grows where it is rounding at the first step and more than rounding at another, [`LIMIT`] times the noise each. Where an equation is
+/// wrong while P is still symmetric, that is the cause, and the symmetry is lost because of it.
+pub(super) fn lost(answered: &[Answered], cases: &[CaseReport], precision: Precision) -> Option<Observation> {
     let mut found: Vec<(&Answered, Loss)> = answered
         .iter()
         .filter_map(|of| Some((of, greatest_loss(of, precision)?)))
+        .filter(|(of, loss)| cases[of.index].first_fault().is_none_or(|step| step > loss.first.0))
         .collect();
     found.sort_by(|(_, a), (_, b)| b.most.1.total_cmp(&a.most.1));
     let ids = found.iter().map(|(of, _)| of.problem.id.clone()).collect();
