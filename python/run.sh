@@ -25,14 +25,16 @@ cargo fmt --check
 [ "$(grep -m 1 '^version' Cargo.toml)" = "$(grep -m 1 '^version' ../Cargo.toml)" ] || { echo "the two versions differ" && exit 1; }
 "$work/tools/bin/maturin" build --quiet --profile dev --interpreter python3 --out "$work/wheels"
 
-# An empty environment: the wheel, and what it asks for. The four lines are those of README.md, after a filter that they can judge.
+# An empty environment: the wheel, and what it asks for. The lines are those that this README and the project's print.
 python3 -m venv "$work/user"
 "$work/user/bin/pip" install --quiet "$work"/wheels/*.whl
-sed -n '/^```python$/,/^```$/{/^```/d;p}' README.md >"$work/example.py"
-(cd "$work" && "$work/user/bin/python" -W error example.py) | tail -n 4
+for readme in README.md ../README.md; do
+    sed -n '/^```python$/,/^```$/{/^```/d;p}' "$readme" >"$work/example.py"
+    (cd "$work" && "$work/user/bin/python" -W error example.py) | tail -n 4
+done
 "$work/user/bin/immaculate" --version
 
-"$work/user/bin/pip" install --quiet pytest filterpy || left_out "python/tests: pytest and FilterPy cannot be installed from PyPI"
+"$work/user/bin/pip" install --quiet pytest filterpy stonesoup==1.9.1 || left_out "python/tests: pytest, FilterPy and Stone Soup cannot be installed from PyPI"
 (cd tests && "$work/user/bin/python" -m pytest -q -p no:cacheprovider)
 "$work/tools/bin/mypy" --strict --python-executable "$work/user/bin/python" --ignore-missing-imports --cache-dir "$work/mypy" immaculate
 

@@ -42,8 +42,7 @@ def test_filterpy_is_judged_as_in_the_table_of_the_readme():
     alone = next(problem for problem in immaculate.cases("kalman") if problem.r == 1 and not any(s.changed for s in problem.steps))
     immaculate.check(filterpy.Filter, cases=[alone.id]).raise_if_wrong()
     verdict = immaculate.check(filterpy.Filter, cases=["combination.turned-over"])
-    faults = {value["quantity"] for value in verdict.as_dict()["cases"][0]["not_simply_right"] if value["finding"] == "fault"}
-    assert faults == {"combined_prediction.mean", "combined_prediction.covariance"}
+    assert faults_of(verdict) == {"combined_prediction.mean", "combined_prediction.covariance"}
 
 
 def test_filterpy_has_extended_and_unscented_filters():
@@ -52,6 +51,25 @@ def test_filterpy_has_extended_and_unscented_filters():
     immaculate.check(filterpy.Filter, problems=[own]).raise_if_wrong()
     unscented = {**own, "filter": {"kind": "unscented", "alpha": 0.5, "beta": 2, "kappa": 1}}
     immaculate.check(filterpy.Filter, problems=[unscented]).raise_if_wrong()
+
+
+def faults_of(verdict):
+    cases = verdict.as_dict()["cases"]
+    return {value["quantity"] for case in cases for value in case["not_simply_right"] if value["finding"] == "fault"}
+
+
+def test_stone_soup_is_judged_as_in_the_table_of_the_readme():
+    stonesoup = pytest.importorskip("immaculate.adapters.stonesoup")
+
+    def check(kind, *ids):
+        problems = [problem.of_mode(0) for problem in immaculate.cases(kind) if not ids or problem.id in ids]
+        return immaculate.check(stonesoup.Filter, kinds=[kind], problems=problems, conventions=stonesoup.CONVENTIONS)
+
+    check("kalman", "update.kalman", "missing.kalman", "singular.updated").raise_if_wrong()
+    check("extended").raise_if_wrong()
+    check("unscented", "rule.unscented.n4", "wrap.unscented").raise_if_wrong()
+    assert faults_of(check("cubature-3", "rule.cubature-3.n2")) == {"innovation_covariance", "cross_covariance"}
+    assert "predicted.covariance" in faults_of(check("unscented", "unscented.unequal"))
 
 
 def command(*arguments):

@@ -1,7 +1,8 @@
 """Adapters for what many people have; each is short and meant to be copied.
 
-    from immaculate.adapters import filterpy, functions
+    from immaculate.adapters import filterpy, functions, stonesoup
 
     immaculate.check(filterpy.Filter, kinds=["kalman"])
+    immaculate.check(stonesoup.Filter, kinds=["unscented"], conventions=stonesoup.CONVENTIONS)
     immaculate.check(functions.filter_of(predict, update), kinds=["extended"])
 """
