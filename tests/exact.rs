@@ -938,6 +938,28 @@ fn diagonal_mixing_with_equal_weights_is_the_mixture() {
 
 // Matrices
 
+/// For one measured component. P is asymmetric, P = M + A with M = Mᵀ and A = −Aᵀ, and the gain is W = P Hᵀ / S.
+#[test]
+fn only_one_form_of_the_update_forgets_an_asymmetry() {
+    let symmetric = matrix![9, 2, 1; 2, 7, -3; 1, -3, 8].map(Rational::integer);
+    let asymmetry = matrix![0, 1, -2; -1, 0, 3; 2, -3, 0].map(Rational::integer);
+    let h = matrix![2, -1, 3].map(Rational::integer);
+    let noise = matrix![Rational::integer(5)];
+    let antisymmetric =
+        |matrix: SMatrix<Rational, 3, 3>| (&matrix - matrix.transpose()).map(|entry| entry / Rational::integer(2));
+    let identity = SMatrix::<Rational, 3, 3>::identity();
+    let p = &symmetric + &asymmetry;
+    let s = &h * &p * h.transpose() + noise;
+    let gain_of = |covariance: &SMatrix<Rational, 3, 3>| (covariance * h.transpose()).map(|entry| entry / s[0].clone());
+    let gain = gain_of(&p);
+    // P − W S Wᵀ leaves A as it is; (I − W H) P leaves (I − W₀ H) A (I − W₀ H)ᵀ, with the gain W₀ of M alone.
+    assert_eq!(antisymmetric(&p - &gain * &s * gain.transpose()), asymmetry);
+    let shrinking = &identity - gain_of(&symmetric) * &h;
+    let left = antisymmetric((&identity - &gain * &h) * &p);
+    assert_eq!(left, &shrinking * &asymmetry * shrinking.transpose());
+    assert_ne!(left, asymmetry);
+}
+
 #[test]
 fn the_cholesky_factor_times_its_transpose_is_the_matrix() {
     // Small integers: every product, sum, quotient and root on the way is an integer, and a double holds it exactly.

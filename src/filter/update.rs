@@ -97,7 +97,7 @@ where
 /// | P_zz  | `innovation_covariance` | M × M | innovation covariance  |
 ///
 /// Why: the conditional covariance of a joint Gaussian. Its lower triangle is kept and [`mirrored`]: rounding must not let the two
-/// triangles part. With W = P⁻HᵀS⁻¹ it is the (I − WH)P⁻ of derbez2000.
+/// triangles part, for this form never forgets a difference between them. With W = P⁻HᵀS⁻¹ it is the (I − WH)P⁻ of derbez2000, which does.
 ///
 /// Example: half of the variance 25 is left. That is what two independent pieces of information give, the prediction's and the
 /// measurement's; the printed (I − WH)P⁰, from the mixed covariance 4, is another number.
@@ -116,7 +116,7 @@ where
 /// Errata: derbez2000 (2) prints (I − WH)P⁰ with the mixed covariance, which has seen neither the motion nor its noise.
 ///
 /// Evidence: `the_kalman_update_is_conditioning_of_a_gaussian` (symbolic),
-/// `printed_update_from_the_mixed_covariance_is_not_conditioning` (exact).
+/// `printed_update_from_the_mixed_covariance_is_not_conditioning`, `only_one_form_of_the_update_forgets_an_asymmetry` (exact).
 pub fn updated_covariance<T: Field, N: Dim, M: Dim>(
     covariance: &OMatrix<T, N, N>,
     gain: &OMatrix<T, N, M>,

@@ -1,8 +1,8 @@
 //! Covariances that are not symmetric: rounding that grows from step to step, and matrices of which one triangle is shown.
 //!
-//! A form that keeps symmetry in exact arithmetic alone, (I − K H) P⁻ say, adds an antisymmetric rounding error in every step. The
-//! prediction carries it on, F A Fᵀ, and the update does not shrink it as it shrinks P. Each equation is right on the values before it;
-//! what is wrong is that nobody makes P symmetric.
+//! A form that keeps symmetry in exact arithmetic alone adds an antisymmetric rounding error A in every step. The prediction carries it on,
+//! F A Fᵀ. The update P⁻ − K S Kᵀ leaves it as it is, so that it grows with F; (I − K H) P⁻ shrinks it, (I − K H) A (I − K H)ᵀ. Each
+//! equation is right on the values before it; what is wrong is that nobody makes P symmetric.
 
 use super::evidence::Answered;
 use super::judge::{LIMIT, Place};
