@@ -6,7 +6,7 @@
 //! for a smaller map of stability.
 
 use immaculate::imm::{Failure, failure::Cause};
-use immaculate::paper::derbez2000::relative::{Relative, Tally, extremes};
+use immaculate::paper::derbez2000::relative::{Relative, below, extremes, within};
 use immaculate::paper::derbez2000::{arithmetic, claims, long_term, search, stability};
 use immaculate::paper::experiment::Experiment;
 use immaculate::paper::liu2017::arithmetic::{point_counts, slightly_cheaper, time_proportional_to_points};
@@ -16,7 +16,7 @@ use immaculate::paper::simulation::Simulation;
 use immaculate::paper::specification::{Choices, Specification, derbez2000, liu2017, zhu2016};
 use immaculate::paper::sustika2015::claims::{is_mismatch_the_cause, ratio_less, the_window_decides};
 use immaculate::paper::verdict::{
-    JudgedClaim, Verdict, all_below_zero, all_of, below_zero_whichever, better_by_a_thousandth, confirmed_if, in_words,
+    JudgedClaim, Tally, Verdict, all_below_zero, all_of, below_zero, better_by_a_thousandth, confirmed_if, in_words,
     is_within_a_thousandth, proven_by, proven_if, refuted_by, sign_of, whichever,
 };
 use immaculate::paper::zhu2016::arithmetic::{all_rmse_smaller, better_than_ckf, load};
@@ -75,26 +75,26 @@ fn all_below_zero_needs_all_and_one_above_refutes() {
         (&[below, below][..], Verdict::Confirmed),
         (&[above, above], Verdict::Refuted),
         (&[unsure, unsure], Verdict::Undecided),
-        (&[below, above], Verdict::NotReproducible),
-        (&[below, unsure, above], Verdict::NotReproducible),
+        (&[below, above], Verdict::DependsOnChoice),
+        (&[below, unsure, above], Verdict::DependsOnChoice),
         (&[below, unsure], Verdict::Undecided),
         (&[above, unsure], Verdict::Undecided),
     ] {
-        assert_eq!(below_zero_whichever(differences), verdict, "{differences:?}");
+        assert_eq!(below_zero(differences).verdict(), verdict, "{differences:?}");
     }
 }
 
 #[test]
 fn verdicts_are_put_together_by_their_worst_or_by_what_they_share() {
-    use Verdict::{Confirmed, NotReproducible, Proven, Refuted, Undecided};
+    use Verdict::{Confirmed, DependsOnChoice, Proven, Refuted, Undecided};
     for (verdicts, together, any) in [
         (&[Proven, Proven][..], Proven, Proven),
-        (&[Confirmed, Proven], Confirmed, Undecided),
-        (&[Proven, Confirmed], Proven, Undecided),
-        (&[Confirmed, Refuted], Refuted, NotReproducible),
-        (&[NotReproducible, Undecided, Refuted], Refuted, Undecided),
-        (&[Confirmed, NotReproducible, Undecided], Undecided, Undecided),
-        (&[Proven, NotReproducible], NotReproducible, Undecided),
+        (&[Confirmed, Proven], Confirmed, Confirmed),
+        (&[Proven, Confirmed], Proven, Confirmed),
+        (&[Confirmed, Refuted], Refuted, DependsOnChoice),
+        (&[DependsOnChoice, Undecided, Refuted], Refuted, Undecided),
+        (&[Confirmed, DependsOnChoice, Undecided], Undecided, Undecided),
+        (&[Proven, DependsOnChoice], DependsOnChoice, Undecided),
         (&[], Undecided, Undecided),
     ] {
         assert_eq!(all_of(verdicts), together, "{verdicts:?}");
@@ -102,10 +102,18 @@ fn verdicts_are_put_together_by_their_worst_or_by_what_they_share() {
     }
     assert_eq!([true, false].map(proven_if), [Proven, Refuted]);
     assert_eq!([true, false].map(confirmed_if), [Confirmed, Refuted]);
-    let words = [Proven, Confirmed, Refuted, Undecided, NotReproducible].map(Verdict::words);
+    let words = Verdict::ALL.map(Verdict::words);
     assert_eq!(
         words,
-        ["proven", "confirmed", "refuted", "undecided", "not reproducible"]
+        [
+            "proven",
+            "confirmed",
+            "refuted",
+            "depends on a choice",
+            "not reached",
+            "never published",
+            "undecided"
+        ]
     );
 }
 
@@ -163,6 +171,18 @@ fn a_published_figure_is_met_within_four_standard_errors_of_both() {
     for (published, is_one) in [(17.75, true), (18.0, false), (2.25, true), (2.0, false)] {
         assert_eq!(
             search::is_met(published, estimate(10.0, 1.0), 300),
+            is_one,
+            "{published}"
+        );
+    }
+}
+
+/// Exact: two figures that are rounded to thousandths leave their difference a thousandth, and only that is added.
+#[test]
+fn a_difference_of_published_figures_is_met_within_their_rounding() {
+    for (published, is_one) in [(10.001, true), (9.999, true), (10.0011, false), (9.9989, false)] {
+        assert_eq!(
+            search::is_difference_met(published, estimate(10.0, 1e-9), 300),
             is_one,
             "{published}"
         );
@@ -233,11 +253,15 @@ fn a_configuration_counts_where_its_bounds_are_on_one_side_of_the_limit() {
             choices: String::new(),
             difference: estimate(value, standard_error),
         };
-        let Tally { holds, fails, neither } = count(&[one], 0.5);
-        [holds, fails, neither]
+        let Tally {
+            holds,
+            fails,
+            uncertain,
+        } = count(&[one], 0.5);
+        [holds, fails, uncertain]
     };
     let (holds, fails, neither) = ([1, 0, 0], [0, 1, 0], [0, 0, 1]);
-    for (value, standard_error, within, below) in [
+    for (value, standard_error, is_within, is_below) in [
         (0.0, 0.0625, holds, holds),
         (0.0, 0.125, neither, neither),
         (0.0, 0.25, neither, neither),
@@ -251,29 +275,39 @@ fn a_configuration_counts_where_its_bounds_are_on_one_side_of_the_limit() {
         (-1.0, 0.125, neither, holds),
     ] {
         assert_eq!(
-            tally(Tally::within, value, standard_error),
-            within,
+            tally(within, value, standard_error),
+            is_within,
             "within: {value} ± {standard_error}"
         );
         assert_eq!(
-            tally(Tally::below, value, standard_error),
-            below,
+            tally(below, value, standard_error),
+            is_below,
             "below: {value} ± {standard_error}"
         );
     }
-    let of = |holds, fails, neither| Tally { holds, fails, neither };
+    let of = |holds, fails, uncertain| Tally {
+        holds,
+        fails,
+        uncertain,
+    };
     assert_eq!(of(1, 2, 3).and(of(10, 20, 30)), of(11, 22, 33));
     assert_eq!(
         of(11, 22, 33).words(),
-        "True 11 times, false 22 times, uncertain 33 times."
+        "It holds in 11 of 66 configurations, fails in 22, and is uncertain in 33."
+    );
+    assert_eq!(
+        of(46, 2, 0).words(),
+        "It holds in 46 of 48 configurations, and fails in 2."
     );
     for (tally, verdict) in [
         (of(2, 0, 0), Verdict::Confirmed),
         (of(0, 2, 0), Verdict::Refuted),
         (of(0, 2, 1), Verdict::Undecided),
         (of(2, 0, 1), Verdict::Undecided),
-        (of(1, 1, 0), Verdict::NotReproducible),
-        (of(1, 1, 1), Verdict::NotReproducible),
+        (of(0, 0, 1), Verdict::Undecided),
+        (of(0, 0, 0), Verdict::Undecided),
+        (of(1, 1, 0), Verdict::DependsOnChoice),
+        (of(1, 1, 1), Verdict::DependsOnChoice),
     ] {
         assert_eq!(tally.verdict(), verdict, "{tally:?}");
     }
@@ -333,6 +367,7 @@ fn a_judgement_has_the_words_of_its_claim() {
             place,
             question,
             verdict,
+            configurations,
             evidence,
         } = judgement;
         assert_eq!(
@@ -340,6 +375,7 @@ fn a_judgement_has_the_words_of_its_claim() {
             [&claim.id, &claim.quote, &claim.place, &claim.question]
         );
         assert_eq!((verdict, evidence.as_str()), (Verdict::Undecided, "evidence"));
+        assert_eq!(configurations, None);
     }
 }
 
@@ -356,9 +392,10 @@ fn ledger(judgements: &[JudgedClaim]) -> String {
         let lines = words.join(" ").replace("; ", ";\n  ").replace(". ", ".\n  ");
         let _ = writeln!(
             text,
-            "{}: {}\n  {}",
+            "{}: {}\n  {}\n  {}",
             judgement.id,
             judgement.verdict.words(),
+            judgement.answer(),
             lines.trim_end()
         );
     }
@@ -496,7 +533,7 @@ fn a_judge_of_a_table_follows_the_table() {
             "{shorter}"
         );
     }
-    assert_eq!(better_than_ckf(zhu).verdict, Verdict::NotReproducible);
+    assert_eq!(better_than_ckf(zhu).verdict, Verdict::NeverPublished);
     let mut with_ckf = zhu.clone();
     with_ckf.tables[0].columns[4] = "CKF".to_owned();
     assert_eq!(better_than_ckf(&with_ckf).verdict, Verdict::Undecided);
@@ -580,7 +617,7 @@ fn a_judge_of_derbez2000_follows_the_runs() {
         (0.5, 1.0, confirmed),
         (1.11, 1.11, refuted),
         // One reading is nearly as good and the other is not.
-        (1.09, 1.11, Verdict::NotReproducible),
+        (1.09, 1.11, Verdict::DependsOnChoice),
     ] {
         let runs = with_errors(&runs, &[(imm, 1.0), (fixed, chosen), (other, other_reading)]);
         let almost = claims::almost_as_well(s, &runs);

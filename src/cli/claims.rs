@@ -31,7 +31,7 @@ pub fn run(arguments: &ClaimsArguments) -> Result<Done, Refusal> {
     check_that_memory_does(&papers(&arguments.papers), effort)?;
     let bar = bar(0, "{spinner} judging: {pos} runs, {elapsed}");
     let advance: Progress = &|| bar.inc(1);
-    let mut text = String::new();
+    let mut text = report::claims::legend();
     let mut values = Vec::new();
     for paper in papers(&arguments.papers) {
         let judgements = paper.judge(effort, advance).map_err(Refusal::request)?;
@@ -42,7 +42,10 @@ pub fn run(arguments: &ClaimsArguments) -> Result<Done, Refusal> {
     }
     bar.finish_and_clear();
     if arguments.json {
-        return Ok(json_text(&json!({ "seed": arguments.seed, "papers": values })).into());
+        return Ok(json_text(
+            &json!({ "seed": arguments.seed, "verdicts": report::claims::legend_json(), "papers": values }),
+        )
+        .into());
     }
     Ok(text.into())
 }

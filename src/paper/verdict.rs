@@ -5,12 +5,11 @@
 use super::specification::{Claim, Specification};
 use crate::statistics::Estimate;
 use crate::statistics::estimate::figure;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use std::cmp::Ordering;
 
 /// What became of a claim.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
     /// True, by exact arithmetic.
     Proven,
@@ -20,11 +19,31 @@ pub enum Verdict {
     Refuted,
     /// The runs decide neither way.
     Undecided,
-    /// Cannot be decided from what was published.
-    NotReproducible,
+    /// True for some values of what the paper does not print, and false for others.
+    DependsOnChoice,
+    /// No value of what the paper does not print gives it, which does not show that none exists.
+    NotReached,
+    /// Cannot be tried: a filter, a method or the data were not published.
+    NeverPublished,
 }
 
 impl Verdict {
+    /// All verdicts, the firmest first.
+    pub const ALL: [Self; 7] = [
+        Self::Proven,
+        Self::Confirmed,
+        Self::Refuted,
+        Self::DependsOnChoice,
+        Self::NotReached,
+        Self::NeverPublished,
+        Self::Undecided,
+    ];
+
+    /// The verdict as machines read it.
+    pub fn name(self) -> String {
+        self.words().replace(' ', "-")
+    }
+
     /// The verdict in words.
     pub fn words(self) -> &'static str {
         match self {
@@ -32,7 +51,103 @@ impl Verdict {
             Self::Confirmed => "confirmed",
             Self::Refuted => "refuted",
             Self::Undecided => "undecided",
-            Self::NotReproducible => "not reproducible",
+            Self::DependsOnChoice => "depends on a choice",
+            Self::NotReached => "not reached",
+            Self::NeverPublished => "never published",
+        }
+    }
+
+    /// What the verdict means, in a sentence.
+    pub fn meaning(self) -> &'static str {
+        match self {
+            Self::Proven => "True, by exact arithmetic.",
+            Self::Confirmed => "True in the runs, at four standard errors.",
+            Self::Refuted => "False: by arithmetic, by a counterexample, or in the runs at four standard errors.",
+            Self::Undecided => "The runs decide neither way.",
+            Self::DependsOnChoice => "True for some values of what the paper does not print, and false for others.",
+            Self::NotReached => {
+                "No value of what the paper does not print gives it; that does not show that none exists."
+            }
+            Self::NeverPublished => "It cannot be tried: a filter, a method or the data were not published.",
+        }
+    }
+}
+
+impl Serialize for Verdict {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(&self.name())
+    }
+}
+
+/// How a claim fares under what the paper leaves open, by number of configurations.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub struct Tally {
+    /// Certainly true.
+    pub holds: usize,
+    /// Certainly false.
+    pub fails: usize,
+    /// Neither is certain.
+    pub uncertain: usize,
+}
+
+impl Tally {
+    /// Configurations in each of which a claim is certainly true, certainly false, or neither.
+    pub fn of(answers: impl IntoIterator<Item = Option<bool>>) -> Self {
+        let mut tally = Self::default();
+        for answer in answers {
+            match answer {
+                Some(true) => tally.holds += 1,
+                Some(false) => tally.fails += 1,
+                None => tally.uncertain += 1,
+            }
+        }
+        tally
+    }
+
+    /// The verdicts of single configurations.
+    pub fn of_verdicts(verdicts: &[Verdict]) -> Self {
+        Self::of(verdicts.iter().map(|verdict| match verdict {
+            Verdict::Proven | Verdict::Confirmed => Some(true),
+            Verdict::Refuted => Some(false),
+            _ => None,
+        }))
+    }
+
+    /// Both, of different configurations or filters.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            holds: self.holds + other.holds,
+            fails: self.fails + other.fails,
+            uncertain: self.uncertain + other.uncertain,
+        }
+    }
+
+    /// Confirmed or refuted if every configuration agrees; if it is certainly true in some and certainly false in others, what was not
+    /// printed decides.
+    pub fn verdict(self) -> Verdict {
+        match (self.holds, self.fails, self.uncertain) {
+            (0, 0, _) => Verdict::Undecided,
+            (_, 0, 0) => Verdict::Confirmed,
+            (0, _, 0) => Verdict::Refuted,
+            (0, ..) | (_, 0, _) => Verdict::Undecided,
+            _ => Verdict::DependsOnChoice,
+        }
+    }
+
+    /// The numbers in words.
+    pub fn words(self) -> String {
+        let Self {
+            holds,
+            fails,
+            uncertain,
+        } = self;
+        let of = holds + fails + uncertain;
+        match uncertain {
+            0 => format!("It holds in {holds} of {of} configurations, and fails in {fails}."),
+            _ => format!(
+                "It holds in {holds} of {of} configurations, fails in {fails}, and is uncertain in {uncertain}."
+            ),
         }
     }
 }
@@ -50,8 +165,30 @@ pub struct JudgedClaim {
     pub question: String,
     /// The answer.
     pub verdict: Verdict,
+    /// In how many configurations it holds, where the paper leaves open which is meant.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub configurations: Option<Tally>,
     /// What it rests on, with the figures.
     pub evidence: String,
+}
+
+impl JudgedClaim {
+    /// The same with the configurations over which it was judged.
+    #[must_use]
+    pub fn over(self, configurations: Tally) -> Self {
+        Self {
+            configurations: Some(configurations),
+            ..self
+        }
+    }
+
+    /// The answer in a sentence: what the verdict means, or in how many configurations the claim holds.
+    pub fn answer(&self) -> String {
+        match self.configurations {
+            Some(configurations) => configurations.words(),
+            None => self.verdict.meaning().to_owned(),
+        }
+    }
 }
 
 /// How many standard errors a difference must have to count: 4, a false alarm in 16 000 for a Gaussian figure, so that among some
@@ -100,6 +237,7 @@ impl Specification {
             place: claim.place.clone(),
             question: claim.question.clone(),
             verdict,
+            configurations: None,
             evidence,
         }
     }
@@ -128,24 +266,22 @@ pub fn all_below_zero(differences: &[Estimate]) -> Verdict {
     }
 }
 
-/// The verdict where it was not published which of several is meant: theirs if they agree; not reproducible when one is confirmed and
-/// another refuted, so that what was not published decides.
+/// The verdict where it was not published which of several is meant: theirs if they agree; if one is confirmed and another refuted, what
+/// was not published decides.
 pub fn whichever(verdicts: &[Verdict]) -> Verdict {
-    let (confirmed, refuted) = (
-        verdicts.contains(&Verdict::Confirmed),
-        verdicts.contains(&Verdict::Refuted),
-    );
     match verdicts.first() {
         Some(first) if verdicts.iter().all(|verdict| verdict == first) => *first,
-        _ if confirmed && refuted => Verdict::NotReproducible,
-        _ => Verdict::Undecided,
+        _ => Tally::of_verdicts(verdicts).verdict(),
     }
 }
 
-/// The verdict on "the first is smaller" where it was not published which of the differences first − second is meant.
-pub fn below_zero_whichever(differences: &[Estimate]) -> Verdict {
-    let each = differences.iter().map(|difference| all_below_zero(&[*difference]));
-    whichever(&each.collect::<Vec<Verdict>>())
+/// "The first is smaller" where it was not published which of the differences first − second is meant.
+pub fn below_zero(differences: &[Estimate]) -> Tally {
+    Tally::of(
+        differences
+            .iter()
+            .map(|difference| sign_of(*difference).map(Ordering::is_lt)),
+    )
 }
 
 /// Proven or refuted, by arithmetic that decides the claim either way.
@@ -194,9 +330,9 @@ pub fn is_within_a_thousandth(difference: Estimate, error: Estimate) -> bool {
     difference.value.abs() + DECISIVE * difference.standard_error < RELEVANT * error.value
 }
 
-/// The verdict on several of which all must hold: refuted if one is, undecided if one is, not reproducible if one is, else the first.
+/// The verdict on several of which all must hold: refuted if one is, undecided if one is, dependent on a choice if one is, else the first.
 pub fn all_of(verdicts: &[Verdict]) -> Verdict {
-    for decisive in [Verdict::Refuted, Verdict::Undecided, Verdict::NotReproducible] {
+    for decisive in [Verdict::Refuted, Verdict::Undecided, Verdict::DependsOnChoice] {
         if verdicts.contains(&decisive) {
             return decisive;
         }

@@ -224,7 +224,7 @@ pub fn nonlinear_filters(s: &Specification) -> JudgedClaim {
                     equation: there is nothing to reproduce.";
     s.judgement(
         "derbez2000-nonlinear-filters",
-        Verdict::NotReproducible,
+        Verdict::NeverPublished,
         evidence.to_owned(),
     )
 }

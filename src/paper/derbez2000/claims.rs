@@ -5,9 +5,9 @@
 //! [`arithmetic`].
 
 use super::arithmetic::published;
-use super::contestants::{CoordinateFilters, Coordinates, Reading};
+use super::contestants::{CA, CoordinateFilters, Coordinates, FIXED_GAIN, IMM, Reading};
 use super::path::{PlaneState, Regime};
-use super::relative::{Relative, Tally, extremes, relative};
+use super::relative::{Relative, below, extremes, relative, within};
 use super::scenario::{CoordinateScenario, Steps, follow};
 use super::{CLOSEST_POINT, arithmetic, long_term, scenario, search, stability};
 use crate::imm::{Equations, Interaction};
@@ -15,7 +15,7 @@ use crate::paper::comparison::ErrorQuantity;
 use crate::paper::experiment::Experiment;
 use crate::paper::monte_carlo::Progress;
 use crate::paper::specification::{Choices, InvalidChoice, Specification, derbez2000 as specification};
-use crate::paper::verdict::{JudgedClaim, Verdict};
+use crate::paper::verdict::{JudgedClaim, Tally, Verdict};
 use crate::paper::{Effort, Paper};
 use crate::statistics::Estimate;
 use crate::statistics::delay::detection_delays;
@@ -23,10 +23,7 @@ use crate::statistics::estimate::{figure, mean};
 use nalgebra::Matrix1;
 use std::fmt::Write;
 
-/// The positions of the contestants in a scenario; the last two are those that the judges add.
-const IMM: usize = 0;
-const FIXED_GAIN: usize = 1;
-const CA: usize = 2;
+/// The positions of the two contestants that the judges add.
 const OTHER_READING: usize = 3;
 const WITHOUT_SPREAD: usize = 4;
 
@@ -146,15 +143,15 @@ pub fn almost_as_well(s: &Specification, runs: &CoordinateEvidence) -> JudgedCla
     let position = |other: usize| relative(&runs.manoeuvres, [other, IMM], ErrorQuantity::Position, any);
     let (chosen, other) = (position(FIXED_GAIN), position(OTHER_READING));
     // Almost as well: worse by less than a tenth.
-    let tally = Tally::below(&chosen, 0.1).and(Tally::below(&other, 0.1));
+    let tally = below(&chosen, 0.1).and(below(&other, 0.1));
     let evidence = format!(
         "Scenario 2, position error less that of IMM, as a part of the latter. Mixed reading where nothing else is said: {}. The other \
-         reading: {}. {}",
+         reading: {}.",
         extremes(&chosen),
         extremes(&other),
-        tally.words(),
     );
     s.judgement("derbez2000-almost-as-well", tally.verdict(), evidence)
+        .over(tally)
 }
 
 /// How large the spread of the means is beside the covariance to which it is added, for the position, in each step of either coordinate
@@ -215,15 +212,15 @@ pub fn minor_covariance_changes(s: &Specification, runs: &CoordinateEvidence, ef
     let [first, second] = [&runs.acceleration, &runs.manoeuvres]
         .map(|experiments| relative(experiments, [WITHOUT_SPREAD, IMM], ErrorQuantity::Position, any));
     // Minor in performance: less than a tenth of the error.
-    let tally = Tally::within(&first, 0.1).and(Tally::within(&second, 0.1));
+    let tally = within(&first, 0.1).and(within(&second, 0.1));
     let _ = write!(
         evidence,
-        " position error of the filter without the spread less with it: scenario 1 {}; scenario 2 {}. Less than a tenth of the error: {}",
+        " position error of the filter without the spread less with it: scenario 1 {}; scenario 2 {}. Minor is less than a tenth of the error.",
         extremes(&first),
         extremes(&second),
-        tally.words(),
     );
     s.judgement("derbez2000-minor-covariance-changes", tally.verdict(), evidence)
+        .over(tally)
 }
 
 /// The mean delay of a contestant in each run, in steps, over the changes of regime in either coordinate; a change that is never noticed
@@ -283,20 +280,20 @@ pub fn sluggish_onset(s: &Specification, runs: &CoordinateEvidence) -> JudgedCla
     };
     let all: Vec<Relative> = runs.manoeuvres.iter().map(of_experiment).collect();
     // Slower: certainly above zero.
-    let below = Tally::below(&all, 0.0);
+    let faster = below(&all, 0.0);
     let tally = Tally {
-        holds: below.fails,
-        fails: below.holds,
-        ..below
+        holds: faster.fails,
+        fails: faster.holds,
+        ..faster
     };
     let _ = write!(
         evidence,
-        " {}; the delay of IMM at the defaults is {} steps. Slower: {}",
+        " {}; the delay of IMM at the defaults is {} steps.",
         extremes(&all),
         figure(mean(&delays(&runs.manoeuvres[0], IMM)).value),
-        tally.words(),
     );
     s.judgement("derbez2000-sluggish-onset", tally.verdict(), evidence)
+        .over(tally)
 }
 
 /// The powers of ten that the bearing's process noise takes, (rad/s²)².
@@ -360,14 +357,12 @@ pub fn cartesian_filtering(
     for relative in &all {
         let _ = write!(evidence, " {};", relative.words());
     }
-    let tally = Tally::below(&all, 0.0);
-    let _ = write!(
-        evidence,
-        " as parts of the latter. The noise of the bearing is not printed; with a bad one range and bearing are as poor as one likes. \
-         Smaller: {}",
-        tally.words()
+    let tally = below(&all, 0.0);
+    evidence.push_str(
+        " as parts of the latter. The noise of the bearing is not printed; with a bad one range and bearing are as poor as one likes.",
     );
-    Ok(s.judgement("derbez2000-cartesian-filtering", tally.verdict(), evidence))
+    Ok(s.judgement("derbez2000-cartesian-filtering", tally.verdict(), evidence)
+        .over(tally))
 }
 
 /// IMM and CA of x and y, then both of range and bearing with each of the noises.
@@ -397,18 +392,18 @@ pub fn equal_on_acceleration(s: &Specification, runs: &CoordinateEvidence) -> Ju
         ("Its other reading", OTHER_READING),
     ] {
         let all = relative(&runs.acceleration, [filter, CA], ErrorQuantity::Position, any);
-        let within = |one: &&Relative| Tally::within(std::slice::from_ref(*one), 0.01).holds == 1;
-        let equal: Vec<&str> = all.iter().filter(within).map(|one| one.choices.as_str()).collect();
+        let is_equal = |one: &&Relative| within(std::slice::from_ref(*one), 0.01).holds == 1;
+        let equal: Vec<&str> = all.iter().filter(is_equal).map(|one| one.choices.as_str()).collect();
         let _ = write!(
             evidence,
             " {name}: {}; within a hundredth at: {}.",
             extremes(&all),
             equal.join("; ")
         );
-        tally = tally.and(Tally::within(&all, 0.01));
+        tally = tally.and(within(&all, 0.01));
     }
-    let _ = write!(evidence, " Within a hundredth: {}", tally.words());
     s.judgement("derbez2000-equal-on-acceleration", tally.verdict(), evidence)
+        .over(tally)
 }
 
 /// The y-error of the fixed-gain filter beside that of constant acceleration.
@@ -417,17 +412,16 @@ pub fn thirty_per_cent(s: &Specification, runs: &CoordinateEvidence) -> JudgedCl
     // The printed figures are rounded in the third decimal.
     let greatest = 1.0 - (y[FIXED_GAIN] - 0.0005) / (y[CA] + 0.0005);
     let all = relative(&runs.manoeuvres, [FIXED_GAIN, CA], ErrorQuantity::Y, any);
-    let tally = Tally::below(&all, -0.3);
+    let tally = below(&all, -0.3);
     let evidence = format!(
         "Table 1 itself: 1 − {}/{} is {:.1} %, and at most {:.1} % before rounding; the overall error is smaller by {:.1} %. Scenario 2, \
-         y-error of the fixed gain less that of CA, as a part of the latter: {}. Smaller by 30 %: {}",
+         y-error of the fixed gain less that of CA, as a part of the latter: {}.",
         y[FIXED_GAIN],
         y[CA],
         100.0 * (1.0 - y[FIXED_GAIN] / y[CA]),
         100.0 * greatest,
         100.0 * overall_gain(s),
         extremes(&all),
-        tally.words(),
     );
     // The claim refers to its table, which does not have it.
     let verdict = if greatest < 0.3 {
@@ -435,7 +429,7 @@ pub fn thirty_per_cent(s: &Specification, runs: &CoordinateEvidence) -> JudgedCl
     } else {
         tally.verdict()
     };
-    s.judgement("derbez2000-thirty-per-cent", verdict, evidence)
+    s.judgement("derbez2000-thirty-per-cent", verdict, evidence).over(tally)
 }
 
 /// The part by which the printed overall error of the fixed gain is smaller than that of CA.
@@ -457,10 +451,11 @@ pub fn full_imm_much_better(s: &Specification, runs: &CoordinateEvidence) -> Jud
         let all = relative(&runs.manoeuvres, [IMM, other], ErrorQuantity::Position, in_turn);
         let _ = write!(evidence, " {name}: {}.", extremes(&all));
         // Much better: by more than a tenth.
-        tally = tally.and(Tally::below(&all, -0.1));
+        tally = tally.and(below(&all, -0.1));
     }
-    let _ = write!(evidence, " Better by a tenth: {}", tally.words());
+    evidence.push_str(" Much better is by a tenth.");
     s.judgement("derbez2000-full-imm-much-better", tally.verdict(), evidence)
+        .over(tally)
 }
 
 /// Scenario 3, whose data were not published.
@@ -487,5 +482,5 @@ pub fn third_set_supports(s: &Specification, runs: &CoordinateEvidence) -> Judge
         100.0 * of_table("Overall"),
         100.0 * of_one_run,
     );
-    s.judgement("derbez2000-third-set-supports", Verdict::NotReproducible, evidence)
+    s.judgement("derbez2000-third-set-supports", Verdict::NeverPublished, evidence)
 }

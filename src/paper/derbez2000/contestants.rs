@@ -22,6 +22,13 @@ use crate::number::Real;
 use crate::steady::gains;
 use nalgebra::{Matrix1, U1, U3, Vector2, Vector3, Vector4};
 
+/// The positions of the three in a scenario and in the columns of the tables.
+pub const IMM: usize = 0;
+/// As [`IMM`].
+pub const FIXED_GAIN: usize = 1;
+/// As [`IMM`].
+pub const CA: usize = 2;
+
 /// What a filter of the comparison filters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Coordinates {

@@ -55,7 +55,7 @@ pub fn half_the_load(s: &Specification) -> JudgedClaim {
     } else if least > 0.6 {
         Verdict::Refuted
     } else {
-        Verdict::NotReproducible
+        Verdict::DependsOnChoice
     };
     s.judgement("derbez2000-half-the-load", verdict, evidence)
 }

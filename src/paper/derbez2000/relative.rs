@@ -7,7 +7,7 @@ use super::path::Regime;
 use super::scenario::CoordinateScenario;
 use crate::paper::comparison::ErrorQuantity;
 use crate::paper::experiment::Experiment;
-use crate::paper::verdict::{DECISIVE, Verdict};
+use crate::paper::verdict::{DECISIVE, Tally};
 use crate::statistics::Estimate;
 use crate::statistics::estimate::figure;
 
@@ -74,74 +74,20 @@ pub fn extremes(all: &[Relative]) -> String {
     }
 }
 
-/// How a claim fares under what the paper leaves open, by number of configurations.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Tally {
-    /// Certainly true.
-    pub holds: usize,
-    /// Certainly false.
-    pub fails: usize,
-    /// Neither is certain.
-    pub neither: usize,
+/// "The first's error is another by less than `limit`", as a part of the second's.
+pub fn within(all: &[Relative], limit: f64) -> Tally {
+    Tally::of(all.iter().map(|relative| match relative.bounds() {
+        (low, high) if -limit < low && high < limit => Some(true),
+        (low, high) if high < -limit || limit < low => Some(false),
+        _ => None,
+    }))
 }
 
-impl Tally {
-    /// "The first's error is another by less than `limit`", as a part of the second's.
-    pub fn within(all: &[Relative], limit: f64) -> Self {
-        Self::of(all.iter().map(|relative| match relative.bounds() {
-            (low, high) if -limit < low && high < limit => Some(true),
-            (low, high) if high < -limit || limit < low => Some(false),
-            _ => None,
-        }))
-    }
-
-    /// "The first's error is larger by less than `limit`", or, with a negative one, smaller by more than its amount.
-    pub fn below(all: &[Relative], limit: f64) -> Self {
-        Self::of(all.iter().map(|relative| match relative.bounds() {
-            (_, high) if high < limit => Some(true),
-            (low, _) if limit < low => Some(false),
-            _ => None,
-        }))
-    }
-
-    fn of(answers: impl Iterator<Item = Option<bool>>) -> Self {
-        let mut tally = Self::default();
-        for answer in answers {
-            match answer {
-                Some(true) => tally.holds += 1,
-                Some(false) => tally.fails += 1,
-                None => tally.neither += 1,
-            }
-        }
-        tally
-    }
-
-    /// Both, of different configurations or filters.
-    #[must_use]
-    pub fn and(self, other: Self) -> Self {
-        Self {
-            holds: self.holds + other.holds,
-            fails: self.fails + other.fails,
-            neither: self.neither + other.neither,
-        }
-    }
-
-    /// Confirmed or refuted when it is so in every configuration; not reproducible where it is so in some and not in others, so that what
-    /// was not published decides.
-    pub fn verdict(self) -> Verdict {
-        match (self.holds, self.fails, self.neither) {
-            (_, 0, 0) => Verdict::Confirmed,
-            (0, _, 0) => Verdict::Refuted,
-            (0, ..) | (_, 0, _) => Verdict::Undecided,
-            _ => Verdict::NotReproducible,
-        }
-    }
-
-    /// The numbers in words.
-    pub fn words(self) -> String {
-        format!(
-            "True {} times, false {} times, uncertain {} times.",
-            self.holds, self.fails, self.neither
-        )
-    }
+/// "The first's error is larger by less than `limit`", or, with a negative one, smaller by more than its amount.
+pub fn below(all: &[Relative], limit: f64) -> Tally {
+    Tally::of(all.iter().map(|relative| match relative.bounds() {
+        (_, high) if high < limit => Some(true),
+        (low, _) if limit < low => Some(false),
+        _ => None,
+    }))
 }

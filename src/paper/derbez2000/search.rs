@@ -250,7 +250,7 @@ const NOISE_BOUNDS: [[f64; 2]; 2] = [[2.0, 40.0], [1e-4, 100.0]];
 pub fn table_1_reachable(s: &Specification, effort: Effort, progress: Progress) -> JudgedClaim {
     let published = published(s);
     let mut evidence = String::new();
-    let mut verdict = Verdict::NotReproducible;
+    let mut verdict = Verdict::NotReached;
     for bounds in NOISE_BOUNDS {
         let Some(nearest) = nearest(&published, bounds, effort, progress) else {
             continue;

@@ -365,7 +365,7 @@ fn table_1_gaps(
     let verdict = if reached {
         Verdict::Confirmed
     } else {
-        Verdict::NotReproducible
+        Verdict::NotReached
     };
     Ok(s.judgement("liu2017-table-1-gaps", verdict, evidence))
 }

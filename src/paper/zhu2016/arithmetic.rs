@@ -111,7 +111,7 @@ pub fn load(s: &Specification) -> JudgedClaim {
     let (points, effective) = count(fifth_degree::fifth_degree(4));
     let (third, _) = count(third_degree::third_degree(4));
     let Some(times) = s.tables[0].rows.iter().find(|row| row.name == "Time") else {
-        return s.judgement("zhu2016-load", Verdict::NotReproducible, String::new());
+        return s.judgement("zhu2016-load", Verdict::NeverPublished, String::new());
     };
     let ratio = times.values[0] / times.values[1];
     let evidence = format!(
@@ -136,7 +136,7 @@ pub fn better_than_ckf(s: &Specification) -> JudgedClaim {
     let verdict = if was_run {
         Verdict::Undecided
     } else {
-        Verdict::NotReproducible
+        Verdict::NeverPublished
     };
     s.judgement("zhu2016-better-than-ckf", verdict, evidence)
 }

@@ -174,7 +174,7 @@ pub fn better_than_omtm(s: &Specification, printed: &Experiment) -> JudgedClaim 
          crate, which decides nothing about it, the position error of IMM5CKF minus its own is {}.",
         in_words(difference, "m"),
     );
-    s.judgement("zhu2016-better-than-omtm", Verdict::NotReproducible, evidence)
+    s.judgement("zhu2016-better-than-omtm", Verdict::NeverPublished, evidence)
 }
 
 /// How late the first filter notices a change of motion.

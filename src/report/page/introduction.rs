@@ -3,7 +3,7 @@
 //! After this file the reader knows the page's first screen: what Immaculate is for, what it holds, and what became of the claims.
 
 use super::content::{Content, OfPaper};
-use super::ledger::{VERDICTS, count};
+use super::ledger::count;
 use super::table::framed;
 use crate::oracle::case;
 use crate::oracle::variant::{Kind, catalogue};
@@ -88,14 +88,14 @@ fn outcome(content: &Content) -> Markup {
                 thead {
                     tr {
                         th scope="col" { "paper" }
-                        @for verdict in VERDICTS { th scope="col" { (verdict.words()) } }
+                        @for verdict in Verdict::ALL { th scope="col" { (verdict.words()) } }
                     }
                 }
                 tbody {
                     @for of_paper in &content.papers { (row(of_paper)) }
                     tr.total {
                         th scope="row" { "all" }
-                        @for verdict in VERDICTS { td { (all(verdict)) } }
+                        @for verdict in Verdict::ALL { td { (all(verdict)) } }
                     }
                 }
             }
@@ -108,7 +108,7 @@ fn row(of_paper: &OfPaper) -> Markup {
     html! {
         tr {
             th scope="row" { a href=(format!("#{key}-claims")) { (key) } }
-            @for verdict in VERDICTS { td { (count(&of_paper.judgements, verdict)) } }
+            @for verdict in Verdict::ALL { td { (count(&of_paper.judgements, verdict)) } }
         }
     }
 }

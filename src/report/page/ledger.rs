@@ -1,20 +1,11 @@
 //! The ledger of a paper's claims.
 //!
-//! After this file the reader knows how a judged claim is shown: the verdict, the paper's words, what was asked, how it was judged, and
-//! what came out.
+//! After this file the reader knows how a judged claim is shown: the verdict, the paper's words, what was asked, the answer, what it rests on,
+//! and how it was judged.
 
 use super::content::OfPaper;
 use crate::paper::verdict::{JudgedClaim, Verdict};
 use maud::{Markup, html};
-
-/// All verdicts, the firmest first.
-pub const VERDICTS: [Verdict; 5] = [
-    Verdict::Proven,
-    Verdict::Confirmed,
-    Verdict::Refuted,
-    Verdict::NotReproducible,
-    Verdict::Undecided,
-];
 
 /// The claims of a paper, in its order.
 pub fn section(of_paper: &OfPaper) -> Markup {
@@ -26,13 +17,16 @@ pub fn section(of_paper: &OfPaper) -> Markup {
     };
     html! {
         section aria-labelledby=(format!("{key}-claims")) {
-            h3 id=(format!("{key}-claims")) { "What " (key) " claims" }
-            p { (counts(&of_paper.judgements)) ". Each verdict is computed; the evidence says from what." }
+            h2 id=(format!("{key}-claims")) { "What " (key) " claims" }
+            p {
+                (counts(&of_paper.judgements)) ". Each verdict is computed; the evidence says from what. " a href="#claims" { "What the verdicts mean" } "."
+            }
             @for judgement in &of_paper.judgements {
                 article.claim id={ "claim-" (judgement.id) } {
-                    h4 { (mark(judgement.verdict)) " " span.id { (judgement.id) } }
+                    h3 { (mark(judgement.verdict)) " " span.id { (judgement.id) } }
                     blockquote { p { (judgement.quote) } footer { (judgement.place) } }
                     p { b { "Question. " } (judgement.question) }
+                    p { b { "Answer. " } (judgement.answer()) }
                     p { b { "Evidence. " } (judgement.evidence) }
                     p.judged { b { "Judged by. " } (judged_by(judgement)) }
                 }
@@ -46,7 +40,7 @@ pub fn mark(verdict: Verdict) -> Markup {
     let class = match verdict {
         Verdict::Proven | Verdict::Confirmed => "holds",
         Verdict::Refuted => "fails",
-        Verdict::Undecided | Verdict::NotReproducible => "open",
+        Verdict::Undecided | Verdict::DependsOnChoice | Verdict::NotReached | Verdict::NeverPublished => "open",
     };
     html! { span class=(format!("verdict {class}")) { (verdict.words()) } }
 }
@@ -61,7 +55,7 @@ pub fn count(judgements: &[JudgedClaim], verdict: Verdict) -> usize {
 
 /// How often each verdict was given, in a sentence.
 fn counts(judgements: &[JudgedClaim]) -> String {
-    let given = VERDICTS
+    let given = Verdict::ALL
         .into_iter()
         .map(|verdict| (count(judgements, verdict), verdict));
     let words: Vec<String> = given

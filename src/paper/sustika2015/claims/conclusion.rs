@@ -11,7 +11,7 @@ use super::straight::wrapped_and_not;
 use crate::paper::operations::{CoastalRadar, Sums};
 use crate::paper::specification::Specification;
 use crate::paper::verdict::{
-    JudgedClaim, all_below_zero, all_of, below_zero_whichever, confirmed_if, in_words, proven_if, sign_of, whichever,
+    JudgedClaim, all_below_zero, all_of, below_zero, confirmed_if, in_words, proven_if, sign_of, whichever,
 };
 use crate::statistics::Estimate;
 use crate::statistics::estimate::figure;
@@ -73,7 +73,7 @@ pub fn better_with_mismatch(s: &Specification, runs: &RadarEvidence) -> JudgedCl
     let verdict = all_of(&[
         proven_if(in_tables),
         all_below_zero(&[runs.straight(2).difference(CONVERTED, WRAPPED)]),
-        below_zero_whichever(&gaps(runs, 2)),
+        below_zero(&gaps(runs, 2)).verdict(),
     ]);
     s.judgement("sustika2015-better-with-mismatch", verdict, evidence)
 }

@@ -8,7 +8,7 @@ use super::evidence::{
 };
 use super::straight::wrapped_and_not;
 use crate::paper::specification::Specification;
-use crate::paper::verdict::{JudgedClaim, Verdict, all_of, below_zero_whichever, in_words, proven_if};
+use crate::paper::verdict::{JudgedClaim, Tally, Verdict, all_of, below_zero, in_words, proven_if};
 use crate::statistics::Estimate;
 use crate::statistics::estimate::figure;
 
@@ -31,8 +31,8 @@ pub fn better_when_manoeuvring(s: &Specification, runs: &RadarEvidence) -> Judge
     );
     let verdict = all_of(&[
         proven_if(in_table),
-        below_zero_whichever(&gaps(runs, 1)),
-        below_zero_whichever(&gaps(runs, 2)),
+        below_zero(&gaps(runs, 1)).verdict(),
+        below_zero(&gaps(runs, 2)).verdict(),
     ]);
     s.judgement("sustika2015-better-when-manoeuvring", verdict, evidence)
 }
@@ -51,9 +51,11 @@ pub fn large_error_in_manoeuvres(s: &Specification, runs: &RadarEvidence) -> Jud
             )
         }),
     );
-    let verdicts = [CONVERTED, WRAPPED]
-        .map(|filter| below_zero_whichever(&runs.manoeuvring(1).map(|runs| opposite(gap(runs, filter)))));
-    s.judgement("sustika2015-large-error-in-manoeuvres", all_of(&verdicts), evidence)
+    let tallies =
+        [CONVERTED, WRAPPED].map(|filter| below_zero(&runs.manoeuvring(1).map(|runs| opposite(gap(runs, filter)))));
+    let verdict = all_of(&tallies.map(Tally::verdict));
+    let claim = s.judgement("sustika2015-large-error-in-manoeuvres", verdict, evidence);
+    claim.over(tallies[0].and(tallies[1]))
 }
 
 /// Scenario 2 over scenario 1 with manoeuvres, less the same without.
@@ -79,7 +81,7 @@ pub fn mismatch_hurts_manoeuvres(s: &Specification, runs: &RadarEvidence) -> Jud
         clauses(&[0, 1, 2], both),
     );
     let verdicts = [CONVERTED, WRAPPED]
-        .map(|filter| below_zero_whichever(&WINDOWS.map(|path| opposite(hurts_more(runs, path, filter)))));
+        .map(|filter| below_zero(&WINDOWS.map(|path| opposite(hurts_more(runs, path, filter)))).verdict());
     let verdict = all_of(&[all_of(&verdicts), proven_if(in_table)]);
     s.judgement("sustika2015-mismatch-hurts-manoeuvres", verdict, evidence)
 }
@@ -98,8 +100,8 @@ pub fn larger_error_in_figure_3(s: &Specification, runs: &RadarEvidence) -> Judg
 
 /// What two differences of the same filters in two windows say together.
 pub fn the_window_decides(gaps: &[Estimate; 2]) -> &'static str {
-    match below_zero_whichever(gaps) {
-        Verdict::NotReproducible => "which filter is the better one depends on when the manoeuvres are",
+    match below_zero(gaps).verdict() {
+        Verdict::DependsOnChoice => "which filter is the better one depends on when the manoeuvres are",
         Verdict::Confirmed => "IMM-CMKF is the better one in both windows",
         Verdict::Refuted => "IMM-UKF is the better one in both windows",
         _ => "the runs do not tell in both windows which filter is the better one",
@@ -132,8 +134,10 @@ pub fn almost_the_same(s: &Specification, runs: &RadarEvidence) -> JudgedClaim {
             ALMOST,
         )
     });
-    let verdict = all_of(&[below_zero_whichever(&within), proven_if(part.abs() < ALMOST)]);
+    let tally = below_zero(&within);
+    let verdict = all_of(&[tally.verdict(), proven_if(part.abs() < ALMOST)]);
     s.judgement("sustika2015-almost-the-same", verdict, evidence)
+        .over(tally)
 }
 
 pub fn better_in_scenario_2(s: &Specification, runs: &RadarEvidence) -> JudgedClaim {
@@ -168,6 +172,8 @@ pub fn better_in_scenario_2(s: &Specification, runs: &RadarEvidence) -> JudgedCl
             "cannot"
         },
     );
-    let verdict = all_of(&[below_zero_whichever(&gaps), proven_if(converted < unscented)]);
+    let tally = below_zero(&gaps);
+    let verdict = all_of(&[tally.verdict(), proven_if(converted < unscented)]);
     s.judgement("sustika2015-better-in-scenario-2", verdict, evidence)
+        .over(tally)
 }

@@ -10,7 +10,7 @@ use super::evidence::{
     CONVERTED, PLAIN, RadarEvidence, Runs, WINDOWS, WRAPPED, clauses, is_matched, less_limit, setting_in_words, words,
 };
 use crate::paper::specification::Specification;
-use crate::paper::verdict::{JudgedClaim, Verdict, all_below_zero, confirmed_if, sign_of, whichever};
+use crate::paper::verdict::{JudgedClaim, Tally, Verdict, all_below_zero, confirmed_if, sign_of, whichever};
 use crate::statistics::Estimate;
 use crate::statistics::estimate::{figure, mean};
 use crate::statistics::fit_error::FitForm;
@@ -202,8 +202,9 @@ pub fn divergence(s: &Specification, runs: &RadarEvidence) -> JudgedClaim {
         clauses(&WINDOWS, |path| wrapped[path - 1].words()),
     );
     let is_so = |blocks: &[Blocks; 2]| confirmed_if(blocks.iter().any(|blocks| blocks.made_bad > 0));
-    let verdict = whichever(&[is_so(&plain), is_so(&wrapped)]);
-    s.judgement("sustika2015-divergence", verdict, evidence)
+    let tally = Tally::of_verdicts(&[is_so(&plain), is_so(&wrapped)]);
+    s.judgement("sustika2015-divergence", tally.verdict(), evidence)
+        .over(tally)
 }
 
 /// A tally of the runs of several simulations, divergent by one of the forms.

@@ -138,7 +138,7 @@ pub fn tables_reachable(s: &Specification, runs: &RadarEvidence) -> JudgedClaim 
     let verdict = if is_reached {
         Verdict::Confirmed
     } else {
-        Verdict::NotReproducible
+        Verdict::NotReached
     };
     s.judgement("sustika2015-tables-reachable", verdict, evidence)
 }

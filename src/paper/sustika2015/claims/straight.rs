@@ -5,7 +5,7 @@
 use super::super::GOOD_FIT_ERROR;
 use super::evidence::{CONVERTED, Configuration, PLAIN, RadarEvidence, Runs, WRAPPED, less_limit, published, words};
 use crate::paper::specification::Specification;
-use crate::paper::verdict::{JudgedClaim, all_below_zero, all_of, below_zero_whichever, in_words, proven_if, sign_of};
+use crate::paper::verdict::{JudgedClaim, all_below_zero, all_of, below_zero, in_words, proven_if, sign_of};
 use crate::statistics::Estimate;
 use crate::statistics::fit_error::FitForm;
 use std::cmp::Ordering;
@@ -107,7 +107,7 @@ pub fn below_three_per_cent(s: &Specification, runs: &RadarEvidence) -> JudgedCl
         .into_iter()
         .map(|estimate| less_limit(estimate, GOOD_FIT_ERROR))
         .collect();
-    let verdict = all_of(&[below_zero_whichever(&below), proven_if(greatest < GOOD_FIT_ERROR)]);
+    let verdict = all_of(&[below_zero(&below).verdict(), proven_if(greatest < GOOD_FIT_ERROR)]);
     s.judgement("sustika2015-below-three-per-cent", verdict, evidence)
 }
 
