@@ -610,7 +610,7 @@ fn jumps(html: &str) -> Vec<String> {
 
 /// How many tables have no caption, and headers no scope.
 fn bare_tables(html: &str) -> usize {
-    let captions = html.matches("<caption>").count();
+    let captions = html.matches("<caption").count();
     html.matches("<table").count() - captions + html.matches("<th>").count()
 }
 

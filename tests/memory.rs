@@ -152,7 +152,7 @@ fn more_runs_than_fit_are_refused() {
         ),
         (&["claims", "--runs", "15000"], "the judges of derbez2000"),
         (
-            &["report", "--out", "/nowhere/page.html", "--runs", "3000"],
+            &["report", "--out", "/nowhere/site", "--runs", "3000"],
             "the judges of derbez2000",
         ),
     ] {

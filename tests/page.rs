@@ -1,19 +1,19 @@
-//! Goal: the page that `immaculate report` writes is a document that any browser reads: valid, complete, reachable by keyboard and aloud,
-//! and it asks the network for nothing.
+//! Goal: the pages that `immaculate report` writes are documents that any browser reads: valid, complete, reachable by keyboard and aloud,
+//! and they ask the network for nothing.
 //!
-//! Method: the whole page is made from a few runs and read by the parser of a browser engine; then each rule is held against every element
-//! (exhaustion), and shown to fail on a page that breaks it. That the figures are right is the work of other files.
+//! Method: the whole site is made from a few runs and read by the parser of a browser engine; then each rule is held against every element
+//! of every page (exhaustion), and shown to fail on a page that breaks it. That the figures are right is the work of other files.
 
 use immaculate::book;
 use immaculate::paper::{Effort, Paper};
-use immaculate::report::page;
 use immaculate::report::page::content::{Content, Extent, Watch};
+use immaculate::report::page::{self, Page};
 use scraper::{ElementRef, Html, Selector};
 use std::collections::BTreeSet;
 use std::sync::LazyLock;
 
-/// The page from few runs: what it says of the papers is then worth little, and how it says it is the same.
-fn page() -> String {
+/// The site from few runs: what it says of the papers is then worth little, and how it says it is the same.
+fn site() -> Vec<Page> {
     let extent = Extent {
         effort: Effort { runs: Some(3), seed: 1 },
         map_points: 5,
@@ -22,10 +22,10 @@ fn page() -> String {
         begin: &|_, _| (),
         advance: &|| (),
     };
-    page::html(&Content::compute(extent, &watch).unwrap()).unwrap()
+    page::site(&Content::compute(extent, &watch).unwrap()).unwrap()
 }
 
-static PAGE: LazyLock<String> = LazyLock::new(page);
+static SITE: LazyLock<Vec<Page>> = LazyLock::new(site);
 
 /// A small page that keeps every rule, around a body.
 fn small(body: &str) -> String {
@@ -36,10 +36,17 @@ fn all<'a>(document: &'a Html, selector: &str) -> Vec<ElementRef<'a>> {
     document.select(&Selector::parse(selector).unwrap()).collect()
 }
 
-/// Asserts that a rule finds nothing wrong on the page, and something on a page that breaks it.
+/// Asserts that a rule finds nothing wrong on any page, and something on a page that breaks it.
 fn assert_rule(rule: fn(&str) -> Vec<String>, broken: &[&str]) {
-    let faults = rule(&PAGE);
-    assert!(faults.is_empty(), "{:#?}", &faults[..faults.len().min(20)]);
+    for page in SITE.iter() {
+        let faults = rule(&page.html);
+        assert!(
+            faults.is_empty(),
+            "{}: {:#?}",
+            page.file,
+            &faults[..faults.len().min(20)]
+        );
+    }
     assert!(rule(&small("<p>nothing is wrong here</p>")).is_empty());
     for body in broken {
         assert!(!rule(&small(body)).is_empty(), "not noticed: {body}");
@@ -119,7 +126,9 @@ fn nothing_is_asked_of_the_network_and_no_script_is_run() {
             }
             for link in all(&document, "[href]") {
                 let target = link.attr("href").unwrap_or_default();
-                if link.value().name() != "a" || !(target.starts_with('#') || target.starts_with("https://doi.org/")) {
+                let file = target.split('#').next().unwrap_or_default();
+                let is_page = file.is_empty() || SITE.iter().any(|page| page.file == file);
+                if link.value().name() != "a" || !(is_page || target.starts_with("https://doi.org/")) {
                     faults.push(format!("a link to {target:?}"));
                 }
             }
@@ -140,14 +149,57 @@ fn nothing_is_asked_of_the_network_and_no_script_is_run() {
             "<p onclick=\"f()\">x</p>",
             "<p style=\"background:url(x)\">x</p>",
             "<a href=\"https://example.org/\">x</a>",
+            "<a href=\"nowhere.html\">x</a>",
             "<style>@import 'x';</style>",
             "<svg><image href=\"#a\"/></svg>",
         ],
     );
-    let document = Html::parse_document(&PAGE);
-    let policies = all(&document, "head > meta[http-equiv=Content-Security-Policy]");
-    assert_eq!(policies.len(), 1, "the page itself forbids it too");
-    assert!(policies[0].attr("content").unwrap().starts_with("default-src 'none';"));
+    for page in SITE.iter() {
+        let document = Html::parse_document(&page.html);
+        let policies = all(&document, "head > meta[http-equiv=Content-Security-Policy]");
+        assert_eq!(policies.len(), 1, "the page itself forbids it too");
+        assert!(policies[0].attr("content").unwrap().starts_with("default-src 'none';"));
+    }
+}
+
+/// The links of a page to places of the site that are not there.
+fn dead_links(html: &str) -> Vec<String> {
+    let document = Html::parse_document(html);
+    let links = all(&document, "a[href]")
+        .into_iter()
+        .filter_map(|link| link.attr("href"));
+    let is_dead = |link: &&str| {
+        let Some((file, anchor)) = link.split_once('#') else {
+            return false;
+        };
+        let home = SITE.iter().find(|page| page.file == file);
+        !file.is_empty() && !home.is_some_and(|page| page.html.contains(&format!(" id=\"{anchor}\"")))
+    };
+    links.filter(is_dead).map(str::to_owned).collect()
+}
+
+#[test]
+fn every_link_to_another_page_arrives_at_its_anchor() {
+    assert_rule(
+        dead_links,
+        &[
+            "<a href=\"book.html#nowhere\">x</a>",
+            "<a href=\"nowhere.html#book\">x</a>",
+        ],
+    );
+}
+
+#[test]
+fn every_page_is_reached_from_every_page() {
+    for page in SITE.iter() {
+        let document = Html::parse_document(&page.html);
+        let menu = all(&document, "nav a[href]");
+        let files: Vec<&str> = menu.iter().filter_map(|link| link.attr("href")).collect();
+        assert_eq!(files, SITE.iter().map(|page| &*page.file).collect::<Vec<_>>());
+        let open: Vec<_> = menu.iter().filter(|link| link.attr("aria-current").is_some()).collect();
+        assert_eq!(open.len(), 1, "{}", page.file);
+        assert_eq!(open[0].attr("href"), Some(&*page.file));
+    }
 }
 
 #[test]
@@ -240,11 +292,9 @@ fn tables_and_figures_can_be_read_aloud() {
 
 #[test]
 fn every_claim_erratum_and_equation_of_every_paper_has_its_place() {
-    let document = Html::parse_document(&PAGE);
-    let ids: BTreeSet<&str> = all(&document, "[id]")
-        .iter()
-        .filter_map(|element| element.attr("id"))
-        .collect();
+    let documents: Vec<Html> = SITE.iter().map(|page| Html::parse_document(&page.html)).collect();
+    let elements = documents.iter().flat_map(|document| all(document, "[id]"));
+    let ids: BTreeSet<&str> = elements.filter_map(|element| element.attr("id")).collect();
     for paper in Paper::ALL {
         let specification = paper.specification();
         let errata = specification
@@ -294,7 +344,7 @@ fn every_formula_has_the_parts_that_its_marks_need() {
 fn the_same_seed_gives_the_same_bytes_with_any_number_of_threads() {
     let with_threads = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(page)
+        pool.install(site)
     };
-    assert!(with_threads(3) == *PAGE);
+    assert!(with_threads(3) == *SITE);
 }

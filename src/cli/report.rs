@@ -1,22 +1,23 @@
-//! `immaculate report --out FILE`: everything on one page.
+//! `immaculate report --out DIR`: everything as a small static site.
 //!
-//! After this file the reader knows how the page is asked for, and what is shown while it is computed.
+//! After this file the reader knows how the pages are asked for, and what is shown while they are computed.
 
 use super::progress::style;
-use super::{Done, MOST_RUNS, Refusal, check_that_memory_does, effort, write_file};
+use super::{Done, MOST_RUNS, Refusal, check_that_memory_does, effort, make_directory, write_file};
 use clap::Args;
 use immaculate::paper::Paper;
 use immaculate::report::page;
 use immaculate::report::page::content::{Content, Extent, Watch};
 use indicatif::ProgressBar;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-/// Writes one HTML page: the papers' figures and tables, their claims with verdict and evidence, their errata, and the book of equations.
-/// It needs no network to be read. With the papers' numbers of runs it takes some minutes.
+/// Writes a small static site: how a filter is checked, the catalogue of mistakes, the cases, the papers' figures, tables, claims and
+/// errata, and the book of equations. It starts at index.html and needs neither network nor script. With the papers' numbers of runs
+/// it takes some minutes.
 #[derive(Args)]
 pub struct ReportArguments {
-    /// The file that is written
-    #[arg(long, value_name = "FILE")]
+    /// The folder that is written; it is made if it does not exist
+    #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// The number of Monte-Carlo runs of everything; when not given the papers' own, and what the judges of claims ask for
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=MOST_RUNS))]
@@ -29,14 +30,14 @@ pub struct ReportArguments {
 /// Points a side of the stability map, as `immaculate stability --map` has them.
 const MAP_POINTS: usize = 49;
 
-/// Computes the page and writes it.
+/// Computes the pages and writes them.
 pub fn run(arguments: &ReportArguments) -> Result<Done, Refusal> {
     let extent = Extent {
         effort: effort(arguments.runs, arguments.seed),
         map_points: MAP_POINTS,
     };
     check_that_memory_does(&Paper::ALL, extent.effort)?;
-    check_that_a_file_can_be_there(&arguments.out)?;
+    make_directory(&arguments.out)?; // before minutes of computing
     let bar = ProgressBar::new(0);
     let watch = Watch {
         begin: &|step, length| begin(&bar, step, length),
@@ -44,22 +45,13 @@ pub fn run(arguments: &ReportArguments) -> Result<Done, Refusal> {
     };
     let content = Content::compute(extent, &watch).map_err(Refusal::request)?;
     bar.finish_and_clear();
-    let page = page::html(&content).map_err(|error| Refusal::Output(error.to_string()))?;
-    write_file(&arguments.out, &page)?;
-    Ok(format!("{}: {} kB\n", arguments.out.display(), page.len() / 1000).into())
-}
-
-/// Minutes of computing should not end with a directory that is missing.
-fn check_that_a_file_can_be_there(path: &Path) -> Result<(), Refusal> {
-    let directory = path.parent().filter(|directory| *directory != Path::new(""));
-    let wrong = if path.is_dir() {
-        "is a directory, not a file"
-    } else if directory.is_some_and(|directory| !directory.is_dir()) {
-        "its directory does not exist"
-    } else {
-        return Ok(());
-    };
-    Err(Refusal::Output(format!("{}: {wrong}", path.display())))
+    let pages = page::site(&content).map_err(|error| Refusal::Output(error.to_string()))?;
+    for page in &pages {
+        write_file(&arguments.out.join(&page.file), &page.html)?;
+    }
+    let size: usize = pages.iter().map(|page| page.html.len()).sum();
+    let first = arguments.out.join(&pages[0].file);
+    Ok(format!("{} pages, {} kB; open {}\n", pages.len(), size / 1000, first.display()).into())
 }
 
 /// A new step, and its length where that is known before.

@@ -6,8 +6,9 @@
 //! An item that realises several equations of a paper stands in the section of the first; the others lead there.
 
 use super::markup::{formula, paragraphs, sentence, table};
+use super::table::framed;
 use crate::book::doc::PartKind;
-use crate::book::{Entry, Realisation, entries, entries_of, realisations};
+use crate::book::{Entry, Realisation, entries_of, realisations};
 use crate::paper::Paper;
 use crate::paper::specification::Erratum;
 use crate::report::equation::status;
@@ -18,7 +19,7 @@ pub fn chapter(paper: Paper) -> Markup {
     let of = &paper.specification().paper;
     html! {
         section class="chapter" id={ "book-" (paper.key()) } {
-            h3 { (paper.key()) ": " (of.title) }
+            h1 { "Equations of " (paper.key()) ": " (of.title) }
             p class="citation" {
                 (of.authors) ". " (of.venue) "."
                 @if !of.doi.is_empty() { " doi:" (of.doi) "." }
@@ -33,7 +34,7 @@ fn section(entry: &Entry) -> Markup {
     let equation = entry.equation;
     html! {
         section class="equation" id=(entry.anchor()) {
-            h4 { (entry.reference) ": " (entry.title()) }
+            h2 { (entry.reference) ": " (entry.title()) }
             p class="meaning" { (equation.meaning) }
             div class="formula" { (formula(&equation.latex)) }
             p class={ "status " (equation.status) } { (status(&equation.status)) }
@@ -49,7 +50,7 @@ fn section(entry: &Entry) -> Markup {
 fn corrected(erratum: &Erratum, latex: &str) -> Markup {
     html! {
         div class="erratum" {
-            h5 { "Erratum " code { (erratum.id) } " (" (erratum.kind) ")" }
+            h3 { "Erratum " code { (erratum.id) } " (" (erratum.kind) ")" }
             div class="forms" {
                 figure class="printed" { figcaption { "as printed" } (formula(&erratum.printed)) }
                 figure class="right" { figcaption { "corrected" } (formula(latex)) }
@@ -82,7 +83,7 @@ fn realised(realisation: &Realisation, entry: &Entry) -> Markup {
         .is_some_and(|first| first.reference == entry.reference);
     html! {
         div class="code" id=[is_first.then_some(anchor)] {
-            h5 { (sentence(&doc.title, item)) }
+            h3 { (sentence(&doc.title, item)) }
             @if !doc.remark.is_empty() { (paragraphs(&doc.remark, item)) }
             @for part in &doc.parts {
                 @match part.kind {
@@ -118,7 +119,7 @@ fn first_of(realisation: &Realisation, paper: Paper) -> Option<&'static Entry> {
 fn held(entry: &Entry) -> Markup {
     html! {
         @if !entry.evidence.is_empty() {
-            h5 { "Held by" }
+            h3 { "Held by" }
             ul class="evidence" {
                 @for evidence in &entry.evidence {
                     li { code { (evidence.test) } " (" (evidence.kind) "), " (evidence.path) ":" (evidence.line) }
@@ -161,34 +162,59 @@ fn caught(entry: &Entry) -> Markup {
     }
 }
 
-/// The index: from numbers to code, tests and cases, and from code to numbers.
+/// The index: equations by number, name and status, and code by the equations that it realises.
 pub fn index() -> Markup {
     html! {
-        section class="index" id="book-index" {
-            h3 { "Index" }
-            table class="by-equation" {
-                caption { "Every equation, its code, its tests and the cases that catch mistakes in it" }
-                thead {
+        h1 #book { "The book of equations" }
+        p {
+            "Every equation with its derivation, the code that realises it, the tests that hold it, and the mistakes that are made in it "
+            "with the cases that catch them. Code that realises several equations stands with the first. Symbols are explained under "
+            a href="notation.html" { "notation" } "."
+        }
+        @for paper in Paper::ALL {
+            h2 id={ "index-" (paper.key()) } { (paper.key()) }
+            (framed(&format!("The equations of {}", paper.key()), &index_of(paper)))
+        }
+        h2 #index-code { "By code" }
+        (framed("Every item of the source that realises equations", &by_code()))
+    }
+}
+
+fn index_of(paper: Paper) -> Markup {
+    html! {
+        table {
+            caption.aloud { "The equations of " (paper.key()) }
+            thead {
+                tr { th scope="col" { "equation" } th scope="col" { "name" } th scope="col" { "as printed" } th scope="col" { "code" } }
+            }
+            tbody {
+                @for entry in entries_of(paper) {
                     tr {
-                        th scope="col" { "equation" } th scope="col" { "status" } th scope="col" { "code" }
-                        th scope="col" { "tests" } th scope="col" { "cases" }
+                        th scope="row" { a href={ "#" (entry.anchor()) } { "(" (entry.reference.label) ")" } }
+                        td { (entry.title()) }
+                        td { (entry.equation.status) }
+                        td { @for (index, one) in entry.realisations.iter().enumerate() { @if index > 0 { ", " } (link_to(one)) } }
                     }
                 }
-                tbody { @for entry in entries() { (index_row(entry)) } }
             }
-            table class="by-code" {
-                caption { "Every item of the source that realises equations" }
-                thead { tr { th scope="col" { "code" } th scope="col" { "where" } th scope="col" { "equations" } } }
-                tbody {
-                    @for realisation in realisations() {
-                        tr {
-                            th scope="row" { (link_to(realisation)) }
-                            td { (realisation.item.path) ":" (realisation.item.line) }
-                            td {
-                                @for (index, reference) in realisation.doc.realises.iter().enumerate() {
-                                    @if index > 0 { ", " }
-                                    a href={ "#" (reference.anchor()) } { (reference) }
-                                }
+        }
+    }
+}
+
+fn by_code() -> Markup {
+    html! {
+        table {
+            caption.aloud { "Every item of the source that realises equations" }
+            thead { tr { th scope="col" { "code" } th scope="col" { "where" } th scope="col" { "equations" } } }
+            tbody {
+                @for realisation in realisations() {
+                    tr {
+                        th scope="row" { (link_to(realisation)) }
+                        td { (realisation.item.path) ":" (realisation.item.line) }
+                        td {
+                            @for (index, reference) in realisation.doc.realises.iter().enumerate() {
+                                @if index > 0 { ", " }
+                                a href={ "#" (reference.anchor()) } { (reference) }
                             }
                         }
                     }
@@ -198,22 +224,6 @@ pub fn index() -> Markup {
     }
 }
 
-fn index_row(entry: &Entry) -> Markup {
-    html! {
-        tr {
-            th scope="row" { a href={ "#" (entry.anchor()) } { (entry.reference) } }
-            td { (entry.equation.status) }
-            td { @for (index, one) in entry.realisations.iter().enumerate() { @if index > 0 { ", " } (link_to(one)) } }
-            td { (list(entry.evidence.iter().map(|evidence| evidence.test.as_str()))) }
-            td { @if entry.equation.outside.is_some() { "outside a step" } @else { (list(entry.cases().into_iter())) } }
-        }
-    }
-}
-
 fn link_to(realisation: &Realisation) -> Markup {
     html! { a href={ "#" (realisation.item.anchor()) } { code { (realisation.item.name) } } }
-}
-
-fn list<'a>(names: impl Iterator<Item = &'a str>) -> Markup {
-    html! { @for (index, name) in names.enumerate() { @if index > 0 { ", " } code { (name) } } }
 }

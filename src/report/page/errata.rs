@@ -16,7 +16,7 @@ pub fn section(paper: Paper) -> Markup {
         .collect();
     html! {
         section aria-labelledby=(format!("{key}-errata")) {
-            h3 id=(format!("{key}-errata")) { "What is wrong as printed in " (key) }
+            h2 id=(format!("{key}-errata")) { "What is wrong as printed in " (key) }
             p { "The proofs are in the book of equations. " (errata.len()) " of " (entries_of(paper).count()) " equations are wrong as printed." }
             @for (entry, erratum) in errata { (article(entry, erratum)) }
         }
@@ -27,7 +27,7 @@ pub fn section(paper: Paper) -> Markup {
 fn article(entry: &Entry, erratum: &Erratum) -> Markup {
     html! {
         article.erratum id={ "erratum-" (erratum.id) } {
-            h4 { a href={ "#" (entry.anchor()) } { (entry.reference) } " " span.id { (erratum.id) } }
+            h3 { a href={ "#" (entry.anchor()) } { (entry.reference) } " " span.id { (erratum.id) } }
             p { (erratum.why) }
             div.forms {
                 figure.printed { figcaption { "as printed" } (formula(&erratum.printed)) }

@@ -85,12 +85,12 @@ pub fn of_paper(paper: Paper, content: &Content) -> Result<Vec<Markup>, NotDrawn
 fn of_derbez2000(content: &Content) -> Result<Vec<Markup>, NotDrawn> {
     let [stable, unstable, undecided] = content.map.counts();
     Ok(vec![
-        html! { h4 #derbez2000-figures-long-term { "The predicted error beside the simulated one" } },
+        html! { h3 #derbez2000-figures-long-term { "The predicted error beside the simulated one" } },
         framed(
             &long_term::figures_1_and_2(content.extent.effort.seed)?,
             "Figures 1 and 2 of the paper: by how many per cent the predicted long-term error is off. White is right.",
         ),
-        html! { h4 #derbez2000-figures-stability { "Which fixed-gain filters are stable together" } },
+        html! { h3 #derbez2000-figures-stability { "Which fixed-gain filters are stable together" } },
         framed(
             &stability_map::draw(&content.map)?,
             &format!(
@@ -103,7 +103,7 @@ fn of_derbez2000(content: &Content) -> Result<Vec<Markup>, NotDrawn> {
 
 fn of_sustika2015(content: &Content) -> Result<Vec<Markup>, NotDrawn> {
     let mut figures = vec![
-        html! { h4 #sustika2015-figures-sweep { "Scenario 3: the fit error over the noises that the filters take for granted" } },
+        html! { h3 #sustika2015-figures-sweep { "Scenario 3: the fit error over the noises that the filters take for granted" } },
     ];
     for (trajectory, number) in SweptTrajectory::ALL.into_iter().zip([2, 4]) {
         figures.push(framed(
@@ -111,9 +111,9 @@ fn of_sustika2015(content: &Content) -> Result<Vec<Markup>, NotDrawn> {
             &format!("Figure {number} of the paper: the percentage fit error over the filters’ noises."),
         ));
     }
-    figures.push(html! { h4 #sustika2015-figures-divergence { "What makes the unscented filter diverge" } });
+    figures.push(html! { h3 #sustika2015-figures-divergence { "What makes the unscented filter diverge" } });
     figures.push(divergences(&content.divergence));
-    figures.push(html! { h4 #sustika2015-figures-conversions { "Where converted measurements can be trusted" } });
+    figures.push(html! { h3 #sustika2015-figures-conversions { "Where converted measurements can be trusted" } });
     figures.push(framed(
         &conversion::figure()?,
         "The bias and the spread of the four conversions over the standard deviation of the bearing.",

@@ -1,9 +1,8 @@
-//! What a stranger reads first.
-//!
-//! After this file the reader knows the page's first screen: what Immaculate is for, what it holds, and what became of the claims.
+//! The front page: what a stranger understands in a minute, and where everything else is.
 
 use super::content::{Content, OfPaper};
-use super::ledger::count;
+use super::ledger::{count, mark};
+use super::markdown;
 use super::table::framed;
 use crate::oracle::case;
 use crate::oracle::variant::{Kind, catalogue};
@@ -12,31 +11,67 @@ use crate::paper::specification::PublishedEquation;
 use crate::paper::verdict::Verdict;
 use maud::{Markup, html};
 
-/// The page's first section.
-pub fn section(content: &Content) -> Markup {
-    html! {
-        section aria-labelledby="introduction" {
-            h2 #introduction { "In five minutes" }
-            (purpose())
-            (holdings())
-            (outcome(content))
-            (next_steps())
-        }
-    }
-}
+const README: &str = include_str!("../../../README.md");
 
-fn purpose() -> Markup {
+/// What is asked first, and where the answer is.
+const QUESTIONS: [(&str, &str, &str); 10] = [
+    (
+        "Is my filter right?",
+        "#check-your-filter",
+        "check your filter, in ten lines of your language",
+    ),
+    (
+        "How does a verdict find the wrong equation?",
+        "checking.html#from-a-wrong-number-to-its-cause",
+        "from a wrong number to its cause",
+    ),
+    (
+        "Which filters, models and sensors can be checked?",
+        "#what-is-checked",
+        "what is checked, and what is not",
+    ),
+    (
+        "Does it work on my own models and data?",
+        "#your-own-models-and-data",
+        "your own models and data",
+    ),
+    (
+        "My filter does it in another way. Is that wrong?",
+        "formats.html#conventions",
+        "conventions, and how to declare them",
+    ),
+    (
+        "Which mistakes does it know?",
+        "mistakes.html",
+        "the catalogue, by equation",
+    ),
+    (
+        "What is in the published cases?",
+        "cases.html",
+        "the cases, by what a filter meets",
+    ),
+    (
+        "Why should I believe the numbers?",
+        "guarantees.html",
+        "what is guaranteed, and by what",
+    ),
+    (
+        "What does equation (56) say, and why?",
+        "book.html",
+        "the index of equations",
+    ),
+    ("What is wrong in the papers?", "findings.html", "the findings"),
+];
+
+/// The page.
+pub fn page(content: &Content) -> Markup {
     html! {
-        p {
-            "A tracking filter for a target that flies straight and turns runs several Kalman filters side by side and mixes them: the "
-            i { "interacting multiple model" } " filter, IMM. Many programs have one. Few can say whether theirs is right, and none which "
-            "equation is wrong if it is not."
-        }
-        p {
-            "Immaculate is the specification of this filter that can be run. Every equation of four papers is one plain function under its "
-            "printed number. The same function is evaluated on doubles, on exact fractions, on symbols and on enclosures of any precision, "
-            "so that what it says is proven and not only tried."
-        }
+        (markdown::sections(README, &[""]))
+        (holdings())
+        h2 #questions { "Ten questions" }
+        dl.questions { @for (question, link, answer) in QUESTIONS { div { dt { (question) } dd { a href=(link) { (answer) } } } } }
+        (markdown::sections(README, &["What it found in public filters", "What is checked", "Check your filter", "Your own models and data", "The papers"]))
+        (outcome(content))
     }
 }
 
@@ -47,31 +82,37 @@ fn holdings() -> Markup {
         .flat_map(|paper| paper.specification().all_equations())
         .collect();
     let errata = equations.iter().filter(|equation| equation.erratum.is_some()).count();
-    let of_kind = |kind: Kind| catalogue().iter().filter(|variant| variant.kind == kind).count();
+    let mistakes = catalogue()
+        .iter()
+        .filter(|variant| variant.kind == Kind::Mistake)
+        .count();
     let claims: usize = Paper::ALL.iter().map(|paper| paper.specification().claims.len()).sum();
     let cases = case::all().map_or(0, <[case::Case]>::len);
     let holdings = [
         (
+            cases,
+            "cases",
+            "cases.html",
+            "whose every number is the double nearest to the exact value",
+        ),
+        (mistakes, "mistakes", "mistakes.html", "that a verdict can name"),
+        (
             equations.len(),
             "equations",
-            "each with its code, derivation and evidence",
+            "book.html",
+            "each with code, derivation and evidence",
         ),
         (
             errata,
             "errata",
-            "of the papers, the printed form beside the corrected one",
+            "findings.html",
+            "the printed form beside the corrected one",
         ),
-        (claims, "claims", "of the papers, each judged by a computation"),
-        (
-            cases,
-            "cases",
-            "whose every number is the double nearest to the exact value",
-        ),
-        (of_kind(Kind::Mistake), "mistakes", "that a check of a filter can name"),
+        (claims, "claims", "#claims", "of the papers, each judged by computation"),
     ];
     html! {
         ul.holdings {
-            @for (count, what, how) in holdings { li { b { (count) } " " (what) span { (how) } } }
+            @for (count, what, link, how) in holdings { li { b { (count) } " " a href=(link) { (what) } span { (how) } } }
         }
     }
 }
@@ -80,27 +121,23 @@ fn holdings() -> Markup {
 fn outcome(content: &Content) -> Markup {
     let caption = "What became of the papers’ claims";
     let all = |verdict: Verdict| -> usize { content.papers.iter().map(|p| count(&p.judgements, verdict)).sum() };
-    framed(
-        caption,
-        &html! {
-            table.numbers {
-                caption { (caption) }
-                thead {
-                    tr {
-                        th scope="col" { "paper" }
-                        @for verdict in Verdict::ALL { th scope="col" { (verdict.words()) } }
+    html! {
+        h3 #claims { "Their claims" }
+        dl.legend { @for verdict in Verdict::ALL { div { dt { (mark(verdict)) } dd { (verdict.meaning()) } } } }
+        (framed(
+            caption,
+            &html! {
+                table.numbers {
+                    caption { (caption) }
+                    thead { tr { th scope="col" { "paper" } @for verdict in Verdict::ALL { th scope="col" { (verdict.words()) } } } }
+                    tbody {
+                        @for of_paper in &content.papers { (row(of_paper)) }
+                        tr.total { th scope="row" { "all" } @for verdict in Verdict::ALL { td { (all(verdict)) } } }
                     }
                 }
-                tbody {
-                    @for of_paper in &content.papers { (row(of_paper)) }
-                    tr.total {
-                        th scope="row" { "all" }
-                        @for verdict in Verdict::ALL { td { (all(verdict)) } }
-                    }
-                }
-            }
-        },
-    )
+            },
+        ))
+    }
 }
 
 fn row(of_paper: &OfPaper) -> Markup {
@@ -109,28 +146,6 @@ fn row(of_paper: &OfPaper) -> Markup {
         tr {
             th scope="row" { a href=(format!("#{key}-claims")) { (key) } }
             @for verdict in Verdict::ALL { td { (count(&of_paper.judgements, verdict)) } }
-        }
-    }
-}
-
-fn next_steps() -> Markup {
-    html! {
-        h3 { "Where to go from here" }
-        dl {
-            dt { "To know whether your own filter is right" }
-            dd {
-                "let it answer the cases: " code { "immaculate check -- COMMAND" } " judges a program in any language, says in which "
-                "equation it is wrong, and names the mistake where the catalogue has it."
-            }
-            dt { "To see what became of a paper" }
-            dd { "read on: figures, tables, claims and errata of each follow." }
-            dt { "To learn an equation" }
-            dd {
-                "look it up in the " a href="#book" { "book of equations" } " at the end of this page, or with "
-                code { "immaculate equation zhu2016 56" } "."
-            }
-            dt { "To have all of this computed again" }
-            dd { code { "cargo run --release -- report --out report.html" } ", and " code { "cargo test" } " for the proofs." }
         }
     }
 }

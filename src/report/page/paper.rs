@@ -15,12 +15,12 @@ use crate::report::standard_errors;
 use crate::statistics::estimate::figure;
 use maud::{Markup, html};
 
-/// The section of a paper.
+/// The page of a paper.
 ///
 /// # Errors
 ///
 /// [`NotDrawn`] when a figure cannot be drawn.
-pub fn section(of_paper: &OfPaper, content: &Content) -> Result<Markup, NotDrawn> {
+pub fn page(of_paper: &OfPaper, content: &Content) -> Result<Markup, NotDrawn> {
     let specification = of_paper.paper.specification();
     let key = of_paper.paper.key();
     let mut simulations = Vec::new();
@@ -28,19 +28,21 @@ pub fn section(of_paper: &OfPaper, content: &Content) -> Result<Markup, NotDrawn
         simulations.push(simulation(of_paper.paper, reproductions)?);
     }
     Ok(html! {
-        section.paper aria-labelledby=(key) {
-            h2 id=(key) { (key) ": " (specification.paper.title) }
-            (citation(&specification.paper))
-            section aria-labelledby=(format!("{key}-figures")) {
-                h3 id=(format!("{key}-figures")) { "What " (key) " simulates" }
-                @if let Some(figure) = figures::published_and_computed(of_paper)? { (figure) }
-                @for simulation in &simulations { (simulation) }
-                @for figure in figures::of_paper(of_paper.paper, content)? { (figure) }
-                @for table in &specification.tables { (unreproduced(of_paper, table)) }
-            }
-            (ledger::section(of_paper))
-            (errata::section(of_paper.paper))
+        h1 id=(key) { (key) ": " (specification.paper.title) }
+        (citation(&specification.paper))
+        p {
+            a href=(format!("#{key}-claims")) { "what it claims" } " · " a href=(format!("#{key}-figures")) { "what it simulates" } " · "
+            a href=(format!("#{key}-errata")) { "what is wrong as printed" } " · " a href=(format!("#book-{key}")) { "its equations" }
         }
+        (ledger::section(of_paper))
+        section aria-labelledby=(format!("{key}-figures")) {
+            h2 id=(format!("{key}-figures")) { "What " (key) " simulates" }
+            @if let Some(figure) = figures::published_and_computed(of_paper)? { (figure) }
+            @for simulation in &simulations { (simulation) }
+            @for figure in figures::of_paper(of_paper.paper, content)? { (figure) }
+            @for table in &specification.tables { (unreproduced(of_paper, table)) }
+        }
+        (errata::section(of_paper.paper))
     })
 }
 
@@ -63,7 +65,7 @@ fn simulation(paper: Paper, reproductions: &[Reproduction]) -> Result<Markup, No
     let tables = &paper.specification().tables;
     let compared = tables.iter().map(|table| (table, compare(paper, main, table)));
     Ok(html! {
-        h4 id=(name(main)) { (title(paper, main)) }
+        h3 id=(name(main)) { (title(paper, main)) }
         p { (main.runs) " runs of " (main.steps) " steps, seed " (main.seed) "." }
         @for (table, comparisons) in compared {
             @if !comparisons.is_empty() { (side_by_side(table, &comparisons)) }
