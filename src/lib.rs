@@ -158,7 +158,7 @@
 //! | command                          | does                                                                             |
 //! |----------------------------------|----------------------------------------------------------------------------------|
 //! | `immaculate equation ID`         | shows an equation with its code, tests, cases and mistakes                       |
-//! | `immaculate report --out FILE`   | writes the whole specification and what its runs show as one page                |
+//! | `immaculate report --out DIR`    | writes the whole specification and what its runs show as a static site           |
 //! | `immaculate reproduce`, `claims` | runs the papers' simulations beside their tables; judges their claims            |
 //! | `immaculate check -- COMMAND`    | judges a filter in any language: right to so many digits, or wrong where and why |
 //! | `immaculate cases`, `trace FILE` | the certified cases; every value of every step of a problem                      |
@@ -193,7 +193,10 @@ pub mod book;
 #[cfg(feature = "cli")]
 pub mod report;
 
-/// The README's example is run with the others.
+/// The examples of README and of the pages for users are run with the others.
 #[cfg(all(doctest, feature = "cli"))]
 #[doc = include_str!("../README.md")]
 struct Readme;
+#[cfg(all(doctest, feature = "cli"))]
+#[doc = include_str!("../spec/library.md")]
+struct Library;

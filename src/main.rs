@@ -28,16 +28,6 @@ pub struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Rerun the papers' simulations and set their tables beside the published ones
-    Reproduce(cli::reproduce::ReproduceArguments),
-    /// Judge what the papers claim, each claim by computation
-    Claims(cli::claims::ClaimsArguments),
-    /// Write everything on one page: figures, tables, claims, errata, equations
-    Report(cli::report::ReportArguments),
-    /// List a cubature rule: points and weights, exact and decimal, with its proven degree
-    Rule(cli::rule::RuleArguments),
-    /// List the open parameters of the papers' scenarios and their alternatives
-    Choices(cli::choices::ChoicesArguments),
     /// Judge a filter in any language: right to so many digits, or wrong in which equation, and why
     Check(cli::check::CheckArguments),
     /// Run a problem file and print every value of every step; with --digits, proven
@@ -48,6 +38,16 @@ enum Command {
     Variants(cli::variants::VariantsArguments),
     /// Show an equation of the papers: formula, erratum, derivation, code, tests, and what catches mistakes in it
     Equation(cli::equation::EquationArguments),
+    /// Write a static site: how a filter is checked, mistakes, cases, the papers in figures and claims, the book of equations
+    Report(cli::report::ReportArguments),
+    /// Rerun the papers' simulations and set their tables beside the published ones
+    Reproduce(cli::reproduce::ReproduceArguments),
+    /// Judge what the papers claim, each claim by computation
+    Claims(cli::claims::ClaimsArguments),
+    /// List the open parameters of the papers' scenarios and their alternatives
+    Choices(cli::choices::ChoicesArguments),
+    /// List a cubature rule: points and weights, exact and decimal, with its proven degree
+    Rule(cli::rule::RuleArguments),
     /// Prove two fixed-gain filters that exchange estimates stable together, or unstable; map, certificates
     Stability(cli::stability::StabilityArguments),
     /// Be a program under test: this crate's own filter, with mistakes planted on demand

@@ -1,26 +1,33 @@
-//! The README tells the truth: its commands print what it shows.
+//! Goal: README and the pages for users tell the truth: their commands print what they show, and their numbers are those of today.
 //!
 //! Method: each `console` block is a command and an excerpt of its output; every line of the excerpt must occur in the output, in that
-//! order, spaces aside. The Rust block is run with the documentation's examples.
+//! order, spaces aside. Blocks in Rust are run with the documentation's examples; those in other languages by `python/run.sh` and
+//! `tests/adapters/run.sh`.
 
 use immaculate::oracle::case;
 use immaculate::oracle::variant::{Kind, catalogue};
 use immaculate::paper::Paper;
 use std::process::Command;
 
+const README: &str = include_str!("../README.md");
+const CHECKING: &str = include_str!("../spec/checking.md");
+const FINDINGS: &str = include_str!("../spec/findings.md");
+const GUARANTEES: &str = include_str!("../spec/guarantees.md");
+const LIBRARY: &str = include_str!("../spec/library.md");
+
 #[test]
-fn the_commands_of_the_readme_print_what_it_shows() {
-    let readme = include_str!("../README.md");
-    let blocks = readme
-        .split("```console\n")
-        .skip(1)
+fn the_commands_of_the_pages_print_what_they_show() {
+    let pages = [README, CHECKING, FINDINGS, GUARANTEES, LIBRARY];
+    let blocks = pages
+        .into_iter()
+        .flat_map(|page| page.split("```console\n").skip(1))
         .map(|rest| rest.split("```").next().unwrap());
     let mut compared = 0;
     for block in blocks {
         let mut lines = block.lines();
         let command = lines.next().unwrap();
         let Some(arguments) = command.strip_prefix("$ cargo run --release -- ") else {
-            assert_eq!(command, "$ cargo test", "an unknown command in the README");
+            assert_eq!(command, "$ cargo test", "an unknown command");
             continue;
         };
         let program = env!("CARGO_BIN_EXE_immaculate");
@@ -43,7 +50,7 @@ fn the_commands_of_the_readme_print_what_it_shows() {
             compared += 1;
         }
     }
-    assert!(compared > 5, "the README shows the output of a command");
+    assert!(compared > 30, "the pages show the output of commands: {compared} lines");
 }
 
 fn without_spaces(line: &str) -> String {
@@ -51,28 +58,28 @@ fn without_spaces(line: &str) -> String {
 }
 
 #[test]
-fn the_numbers_of_cases_and_variants_in_the_readme_are_those_of_the_catalogues() {
-    let readme = include_str!("../README.md")
-        .split_whitespace()
-        .collect::<Vec<_>>()
-        .join(" ");
+fn the_numbers_of_cases_and_variants_are_those_of_the_catalogues() {
+    let words = |page: &str| page.split_whitespace().collect::<Vec<_>>().join(" ");
     let count = |kind| catalogue().iter().filter(|variant| variant.kind == kind).count();
     let (mistakes, conventions, forms) = (count(Kind::Mistake), count(Kind::Convention), count(Kind::Form));
     let cases = case::all().unwrap().len();
-    for sentence in [
-        format!("{mistakes} mistakes, {conventions} conventions and {forms} forms"),
-        format!("the {cases} certified cases"),
-        format!("Of {} mistakes and conventions", mistakes + conventions),
+    let planted = format!("Of {} mistakes and conventions", mistakes + conventions);
+    for (page, sentence) in [
+        (
+            CHECKING,
+            format!("{mistakes} mistakes, {conventions} conventions and {forms} forms"),
+        ),
+        (CHECKING, format!("the {cases} certified cases")),
+        (CHECKING, planted.clone()),
+        (README, planted),
     ] {
-        assert!(readme.contains(&sentence), "the README does not say: {sentence}");
+        assert!(words(page).contains(&sentence), "the page does not say: {sentence}");
     }
 }
 
 #[test]
-fn every_finding_of_the_readme_rests_on_a_claim_or_an_erratum() {
-    let readme = include_str!("../README.md");
-    let section = readme.split("## What we found in the papers").nth(1).unwrap();
-    let section = section.split("\n## ").next().unwrap();
+fn every_finding_rests_on_a_claim_or_an_erratum() {
+    let section = FINDINGS.split("\n## ").next().unwrap();
     let specifications = Paper::ALL.map(Paper::specification);
     let exists = |id: &str| {
         specifications.iter().any(|specification| {

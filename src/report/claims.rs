@@ -46,7 +46,7 @@ pub fn legend() -> String {
 
 /// The same as JSON.
 pub fn legend_json() -> Value {
-    let meaning = |verdict: Verdict| (verdict.name().to_owned(), Value::from(verdict.meaning()));
+    let meaning = |verdict: Verdict| (verdict.name(), Value::from(verdict.meaning()));
     Verdict::ALL.into_iter().map(meaning).collect()
 }
 

@@ -75,6 +75,16 @@ left_out() {
     echo "LEFT OUT  $1"
 }
 
+# The program in a language that README.md prints.
+printed() {
+    sed -n "/^\`\`\`$1\$/,/^\`\`\`\$/{/^\`\`\`/d;p}" README.md
+}
+
+# What its filter of one mode must come to.
+printed_is_right() {
+    expect 0 "RIGHT on what was judged: $1" "3 right of 3 cases" -- --flag one-mode "${@:2}"
+}
+
 # install COMMAND-OR-FILE PACKAGE…: whether it is there, or can be installed.
 install() {
     local needed=$1
@@ -247,6 +257,10 @@ octave_filter() {
     expect 0 "22 right, 6 skipped of 28 cases" "there are no formulas and no named models here" -- "${format_2[@]}" \
         --answers "$work/answers"
 
+    printed octave >"$work/my_filter.m"
+    octave "addpath('$work'); immaculate.run_folder('$work/problems', '$work/printed', my_filter())" >"$work/octave" 2>&1 || cat "$work/octave"
+    printed_is_right mine --answers "$work/printed"
+
     # The same in a test of its own, the long table, another convention, a mistake and an error, on few cases.
     mkdir "$work/few"
     cp "$work"/problems/{mixing.two-modes,missing.kalman,sensors.extended,heading.extended}.*.json "$work/few"
@@ -295,6 +309,9 @@ cpp_filter() {
         judged "tests in C++" 0 "[ PASSED ]" "[ SKIPPED ] 1 test" "there is one filter for all modes here" -- "$found/imm-test"
     fi
     wait "$program" || cat "$work/program.log"
+    printed cpp >"$work/my_filter.cpp"
+    g++ -std=c++17 -Wall -Wextra -Werror -I "$adapters/cpp" -isystem /usr/include/eigen3 "$work/my_filter.cpp" -o "$work/my_filter"
+    printed_is_right "my filter" -- "$work/my_filter"
     local imm="$fetched/imm"
     expect 0 "RIGHT on what was judged: C++ example, double precision" -- -- "$imm"
     expect 0 "17 right of 17 cases" "4479 of 4479 values" -- --kind converted -- "$imm"

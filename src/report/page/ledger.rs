@@ -1,7 +1,7 @@
 //! The ledger of a paper's claims.
 //!
-//! After this file the reader knows how a judged claim is shown: the verdict, the paper's words, what was asked, the answer, what it rests on,
-//! and how it was judged.
+//! After this file the reader knows how a judged claim is shown: the verdict, the paper's words, what was asked, the answer, what it
+//! rests on, and how it was judged.
 
 use super::content::OfPaper;
 use crate::paper::verdict::{JudgedClaim, Verdict};

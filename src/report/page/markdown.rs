@@ -1,7 +1,7 @@
 //! A page of `spec/`, or parts of the README, as HTML.
 //!
-//! A heading has the anchor that its words give it. A link to another page of the site leads there; a link to a file that is not on the site
-//! is the file's name without a link.
+//! A heading has the anchor that its words give it. A link to another page of the site leads there; a link to a file that is not on the
+//! site is the file's name without a link.
 
 use super::table::framed;
 use maud::{Markup, PreEscaped, html};
@@ -148,8 +148,9 @@ fn rows<'a>(events: &[Event<'a>]) -> Vec<Vec<Vec<Event<'a>>>> {
             Event::Start(Tag::Table(_))
             | Event::End(TagEnd::Table | TagEnd::TableHead | TagEnd::TableRow | TagEnd::TableCell) => {}
             inside => {
-                let cell = rows.last_mut().and_then(|row| row.last_mut());
-                cell.into_iter().for_each(|cell| cell.push(inside.clone()));
+                if let Some(cell) = rows.last_mut().and_then(|row| row.last_mut()) {
+                    cell.push(inside.clone());
+                }
             }
         }
     }
