@@ -1,13 +1,16 @@
-//! Goal: the pages that `immaculate report` writes are documents that any browser reads: valid, complete, reachable by keyboard and aloud,
-//! and they ask the network for nothing.
+//! Goal: the pages that `immaculate report` writes, and that of a verdict, are documents that any browser reads: valid, complete, reachable
+//! by keyboard and aloud, and they ask the network for nothing.
 //!
 //! Method: the whole site is made from a few runs and read by the parser of a browser engine; then each rule is held against every element
 //! of every page (exhaustion), and shown to fail on a page that breaks it. That the figures are right is the work of other files.
 
 use immaculate::book;
+use immaculate::oracle::check::{Selection, check};
+use immaculate::oracle::subject::{Level, Planted};
 use immaculate::paper::{Effort, Paper};
 use immaculate::report::page::content::{Content, Extent, Watch};
 use immaculate::report::page::{self, Page};
+use immaculate::report::verdict;
 use scraper::{ElementRef, Html, Selector};
 use std::collections::BTreeSet;
 use std::sync::LazyLock;
@@ -27,6 +30,24 @@ fn site() -> Vec<Page> {
 
 static SITE: LazyLock<Vec<Page>> = LazyLock::new(site);
 
+/// The page of a verdict, on a filter that is wrong.
+static VERDICT: LazyLock<Page> = LazyLock::new(|| {
+    let variants = vec!["mixed-spread-omitted".to_owned(), "determinant-omitted".to_owned()];
+    let (level, ids) = (
+        Level::Everything,
+        vec!["step.n4-m2".to_owned(), "zhu2016.kalman.run".to_owned()],
+    );
+    let selection = Selection {
+        ids,
+        ..Selection::default()
+    };
+    let report = check(&mut Planted { variants, level }, &selection, &|_| {}).unwrap();
+    Page {
+        file: "verdict.html".to_owned(),
+        html: verdict::page::html(&report).unwrap(),
+    }
+});
+
 /// A small page that keeps every rule, around a body.
 fn small(body: &str) -> String {
     format!("<!DOCTYPE html><html lang=\"en\"><head><title>t</title></head><body><h1>t</h1>{body}</body></html>")
@@ -38,7 +59,7 @@ fn all<'a>(document: &'a Html, selector: &str) -> Vec<ElementRef<'a>> {
 
 /// Asserts that a rule finds nothing wrong on any page, and something on a page that breaks it.
 fn assert_rule(rule: fn(&str) -> Vec<String>, broken: &[&str]) {
-    for page in SITE.iter() {
+    for page in SITE.iter().chain([&*VERDICT]) {
         let faults = rule(&page.html);
         assert!(
             faults.is_empty(),

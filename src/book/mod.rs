@@ -141,9 +141,7 @@ pub fn realisations() -> &'static [Realisation] {
 }
 
 fn entry(paper: Paper, equation: &'static PublishedEquation) -> Entry {
-    let number = equation.number.map(|number| number.to_string());
-    let label = number.or_else(|| equation.name.clone()).unwrap_or_default();
-    let reference = EquationReference::new(paper, label);
+    let reference = EquationReference::new(paper, equation.label());
     let all = realisations().iter();
     let realisations: Vec<&Realisation> = all.filter(|one| one.doc.realises.contains(&reference)).collect();
     let named = Quantity::ALL.into_iter();

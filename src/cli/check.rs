@@ -2,6 +2,7 @@
 //!
 //! After this file the reader knows what a check can be asked for, and what its exit status means.
 
+use super::outputs::Outputs;
 use super::progress::bar;
 use super::search::{self, About, SearchArguments};
 use super::select::Select;
@@ -44,9 +45,12 @@ pub struct CheckArguments {
     /// Print JSON instead of text
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    outputs: Outputs,
 }
 
 pub fn run(arguments: &CheckArguments) -> Result<Done, Refusal> {
+    arguments.outputs.check()?;
     let mut subject: Box<dyn Subject> = match &arguments.answers {
         Some(path) => Box::new(Folder { path: path.clone() }),
         None if arguments.command.is_empty() => {
@@ -87,6 +91,7 @@ pub fn run(arguments: &CheckArguments) -> Result<Done, Refusal> {
     };
     let report = report.map_err(Refusal::request)?;
     bar.finish_and_clear();
+    arguments.outputs.write(&report)?;
     let text = if arguments.json {
         json_text(&report::check_json::json(&report))
     } else {

@@ -91,6 +91,14 @@ pub struct PublishedEquation {
     pub erratum: Option<Erratum>,
 }
 
+impl PublishedEquation {
+    /// The printed number, or the name of an equation without one.
+    pub fn label(&self) -> String {
+        let number = self.number.map(|number| number.to_string());
+        number.or_else(|| self.name.clone()).unwrap_or_default()
+    }
+}
+
 /// What is wrong with an equation as printed.
 #[derive(Debug, Clone, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]

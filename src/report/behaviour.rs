@@ -33,7 +33,7 @@ pub(super) fn why(grade: &Grade) -> Option<&'static str> {
 }
 
 /// What stands in the table.
-fn cell(grade: &Grade) -> String {
+pub(super) fn cell(grade: &Grade) -> String {
     match grade {
         Grade::Right(cases) => format!("right {cases}"),
         Grade::Wrong(wrong, cases) => format!("WRONG {wrong} of {cases}"),
@@ -61,6 +61,15 @@ pub(super) fn behaviours(report: &Report) -> String {
                 .collect::<Vec<_>>(),
         );
     }
+    let mut text = format!("\n{table}\n");
+    for sentence in open_questions(&grades) {
+        text.push_str(&wrapped(&sentence, "  "));
+    }
+    text
+}
+
+/// What was not asked and why, a sentence a reason.
+pub(super) fn open_questions(grades: &[(&'static str, Vec<(Behaviour, Grade)>)]) -> Vec<String> {
     let mut open: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
     for (behaviour, grade) in grades.iter().flat_map(|(_, of_family)| of_family) {
         if let (Grade::NotAsked(_), Some(why)) = (grade, why(grade)) {
@@ -70,12 +79,6 @@ pub(super) fn behaviours(report: &Report) -> String {
             }
         }
     }
-    let mut text = format!("\n{table}\n");
-    for (why, names) in open {
-        text.push_str(&wrapped(
-            &format!("Not asked, since {why}: {}.", names.join(", ")),
-            "  ",
-        ));
-    }
-    text
+    let sentence = |(why, names): (&str, Vec<&str>)| format!("Not asked, since {why}: {}.", names.join(", "));
+    open.into_iter().map(sentence).collect()
 }

@@ -4,15 +4,13 @@
 //! matters.
 
 use super::behaviour::behaviours;
+use super::fault::faulty_equations;
 use super::formula;
 use super::observation::observations;
-use super::{table, wrapped};
-use crate::imm::Quantity;
-use crate::oracle::behaviour::Unasked;
+use super::{table, verdict, wrapped};
 use crate::oracle::check::{CaseReport, Outcome, Report};
 use crate::oracle::diagnose::{Diagnosis, Share};
 use crate::oracle::formula::ComputedFormulas;
-use crate::oracle::judge::{Finding, Judged};
 use crate::oracle::subject::Broken;
 use crate::oracle::variant::{Kind, Variant};
 use std::fmt::Write;
@@ -110,102 +108,30 @@ fn cases(report: &Report) -> String {
 /// The faults by equation: how many, and the first in full.
 fn faults(report: &Report) -> String {
     let mut text = String::new();
-    for quantity in Quantity::ALL {
-        let heading = if report.is_otherwise(quantity) {
-            "OTHERWISE"
-        } else {
-            "FAULT"
-        };
-        let faults: Vec<(&CaseReport, &Judged)> = report
-            .faults()
-            .filter(|(_, judged)| judged.place.1 == quantity)
-            .collect();
-        let Some((case, judged)) = faults.first() else { continue };
-        let mut cases: Vec<&str> = faults.iter().map(|(case, _)| case.id.as_str()).collect();
-        cases.dedup();
-        let _ = writeln!(
-            text,
-            "\n{heading}  {}  —  {}",
-            quantity.name(),
-            case.filters[judged.place.2].equation(quantity)
-        );
-        text.push_str(&wrapped(&first_fault(case, judged, report), "  "));
-        if let Some(explained) = &judged.explained {
+    for fault in faulty_equations(report) {
+        let (heading, name) = (fault.heading(), fault.quantity.name());
+        let _ = writeln!(text, "\n{heading}  {name}  —  {}", fault.equation());
+        text.push_str(&wrapped(&fault.sentence(report.ready.precision), "  "));
+        if let Some(explained) = &fault.first.explained {
             text.push_str(&formula::explained(explained));
         }
-        if !judged.hidden.is_empty() {
-            let names: Vec<&str> = judged.hidden.iter().map(|quantity| quantity.name()).collect();
-            let sentence = format!(
-                "The fault is in this equation or in one before it that is not shown: {}.",
-                names.join(", ")
-            );
-            text.push_str(&wrapped(&sentence, "  "));
-        }
-        if faults.len() > 1 {
-            let others = match cases.len() - 1 {
-                0 => String::new(),
-                1 => " and one other".into(),
-                others => format!(" and {others} others"),
-            };
-            let sentence = format!("And {} more of these values, in this case{others}.", faults.len() - 1);
+        for sentence in fault.hidden().into_iter().chain(fault.others()) {
             text.push_str(&wrapped(&sentence, "  "));
         }
     }
     text
 }
 
-/// The place of a number inside its quantity.
-fn entry(judged: &Judged, index: usize, report: &CaseReport) -> String {
-    let quantity = judged.place.1;
-    let columns = report.columns(judged.place.0, quantity);
-    match quantity.rank() {
-        0 => String::new(),
-        1 => format!("[{index}]"),
-        _ => format!("[{}][{}]", index / columns, index % columns),
-    }
-}
-
-fn first_fault(case: &CaseReport, judged: &Judged, report: &Report) -> String {
-    let (step, quantity, mode) = judged.place;
-    let of_mode = if quantity.is_of_mode() {
-        format!("modes[{mode}].")
-    } else {
-        String::new()
-    };
-    let place = format!("{}, step {step}, {of_mode}{}", case.id, quantity.name());
-    let Some(own) = judged.own else {
-        return format!("{place}: the value is not finite.");
-    };
-    if judged.finding == Finding::NotFinite {
-        return format!(
-            "{place}: the value is not finite; from the program's own values it is {}.",
-            own.expected
-        );
-    }
-    let noise = if own.ratio.is_finite() {
-        format!("{:.0e} times", own.ratio)
-    } else {
-        "infinitely many times".into()
-    };
-    format!(
-        "{place}{} is {}, and should be {} by the program's own values before it: off by {:.2e}{}, {noise} the rounding noise of {}.",
-        entry(judged, own.index, case),
-        number(own.shown),
-        number(own.expected),
-        own.size,
-        unit(quantity),
-        report.ready.precision,
-    )
-}
-
-/// Steps whose equations have no answer on the program's own values.
-fn failures(report: &Report) -> String {
-    let failed: Vec<String> = report
-        .cases
-        .iter()
-        .filter(|case| case.outcome.is_wrong())
+/// Steps whose equations have no answer on the program's own values, the first of each case in a sentence.
+pub(super) fn without_answer(report: &Report) -> Vec<String> {
+    let wrong = report.cases.iter().filter(|case| case.outcome.is_wrong());
+    wrong
         .filter_map(|case| Some(format!("{}: {}.", case.id, case.judgement.as_ref()?.failures.first()?)))
-        .collect();
+        .collect()
+}
+
+fn failures(report: &Report) -> String {
+    let failed = without_answer(report);
     if failed.is_empty() {
         return String::new();
     }
@@ -330,135 +256,18 @@ fn in_parts(parts: &[Share], unexplained: &[String], formulas: &ComputedFormulas
 
 /// What was judged and what was not.
 fn coverage(report: &Report) -> String {
-    let (judged, of) = counts(report);
-    let mut text = format!("\nCOVERAGE  {judged} of {of} values of the cases that were asked for were judged.\n");
-    text.push_str(&passed_over(report));
-    for case in &report.cases {
-        if let Some(certified) = case.certified {
-            let sentence = certified_steps(&case.id, certified, case.dimensions.steps());
-            text.push_str(&wrapped(&sentence, "  "));
-        }
-    }
-    if !report.hidden.is_empty() && judged > 0 {
-        let names: Vec<&str> = report.hidden.iter().map(|quantity| quantity.name()).collect();
-        let sentence = format!(
-            "Never shown: {}. A mistake there is seen only by what follows from it, and what was right there by chance or \
-             cancels later is not seen at all.",
-            names.join(", ")
-        );
+    let mut sentences = verdict::coverage(report).into_iter();
+    let judged = sentences.next().unwrap_or_default();
+    let mut text = format!("\nCOVERAGE  {judged}\n");
+    for sentence in sentences {
         text.push_str(&wrapped(&sentence, "  "));
     }
-    let not_asked = report
-        .not_asked
-        .iter()
-        .filter(|case| case.why != Unasked::Selection)
-        .count();
-    if not_asked > 0 {
-        let sentence = format!(
-            "Cases not asked for: {not_asked}, of filters or formats that the program does not have, or with input that it leaves to its \
-             caller to check."
-        );
-        text.push_str(&wrapped(&sentence, "  "));
-    }
-    match report.echo {
-        None => {
-            text.push_str("  The program gave no echo: whether it reads matrices by rows is seen by the cases only.\n");
-        }
-        Some(true) => {}
-        Some(false) => text.push_str(
-            "  ECHO WRONG: matrix times vector is not what it should be. Does the program read matrices by columns?\n",
-        ),
-    }
     text
-}
-
-/// The values that were shown and not judged, by the reason.
-fn passed_over(report: &Report) -> String {
-    let mut text = String::new();
-    for (finding, sentence) in [
-        (
-            Finding::CannotTell,
-            "cannot be judged: rounding in this precision moves them by as much as their unit",
-        ),
-        (
-            Finding::Undetermined,
-            "are undetermined: they rest on hidden values that are under suspicion",
-        ),
-        (
-            Finding::Unused,
-            "belong to a mode of probability zero, which no output depends on, and were passed over",
-        ),
-        (
-            Finding::Stale,
-            "are shown where there are none, without a detection or as covariances of fixed gains, and were passed over",
-        ),
-    ] {
-        let values = report
-            .cases
-            .iter()
-            .flat_map(|case| &case.judgement)
-            .flat_map(|judgement| &judgement.values);
-        let count = values.filter(|value| value.finding == finding).count();
-        if count > 0 {
-            let _ = writeln!(text, "  {count} {sentence}.");
-        }
-    }
-    text
-}
-
-/// What of a problem of the user is proven.
-fn certified_steps(id: &str, certified: usize, all: usize) -> String {
-    if certified == all {
-        return format!("{id}: every expected value is certified.");
-    }
-    format!(
-        "{id}: the expected values are certified to step {certified} of {all}; after it they are those of Immaculate's own run in doubles, with \
-         its rounding noise, and each equation is judged on the program's own values as before."
-    )
-}
-
-pub(super) fn counts(report: &Report) -> (usize, usize) {
-    let sum = |of: fn(&CaseReport) -> usize| report.cases.iter().map(of).sum();
-    (sum(|case| case.judged), sum(|case| case.of))
 }
 
 /// The sentence that matters.
 fn summary(report: &Report) -> String {
-    let count = |is: fn(&Outcome) -> bool| report.cases.iter().filter(|case| is(&case.outcome)).count();
-    let right = count(|outcome| matches!(outcome, Outcome::Right | Outcome::Rejected { .. }));
-    let wrong = count(Outcome::is_wrong);
-    let skipped = count(|outcome| matches!(outcome, Outcome::Skipped { .. }));
-    let cannot_tell = count(|outcome| matches!(outcome, Outcome::CannotTell));
-    let parts: Vec<String> = [
-        (right, "right"),
-        (wrong, if report.is_excused() { "otherwise" } else { "wrong" }),
-        (cannot_tell, "drowned in rounding noise"),
-        (skipped, "skipped"),
-    ]
-    .into_iter()
-    .filter(|(number, _)| *number > 0)
-    .map(|(number, word)| format!("{number} {word}"))
-    .collect();
-    let least = report.cases.iter().filter_map(|case| Some((case.digits?, &case.id)));
-    let least = least.reduce(|a, b| if b.0 < a.0 { b } else { a });
-    let digits = least.map_or(String::new(), |(digits, id)| {
-        format!("; right values to {digits:.1} digits or more, the fewest in {id}")
-    });
-    let verdict = match (&report.diagnosis, report.is_wrong()) {
-        (_, true) => "WRONG",
-        (Diagnosis::Nothing, false) if right == 0 => "NOTHING JUDGED",
-        (Diagnosis::Nothing, false) if !report.is_complete() => "RIGHT on what was judged",
-        (Diagnosis::Nothing, false) => "RIGHT",
-        (_, false) => "RIGHT, but otherwise, see above",
-    };
-    let name = &report.ready.name;
-    let sentence = format!(
-        "{verdict}: {name}, {}: {} of {} cases{digits}",
-        report.ready.precision,
-        parts.join(", "),
-        report.cases.len()
-    );
-    format!("\n{}", wrapped(&sentence, ""))
+    format!("\n{}", wrapped(&verdict::sentence(report), ""))
 }
 
 /// A number with an exponent where it would be long without.
@@ -467,21 +276,5 @@ pub(super) fn number(value: f64) -> String {
         format!("{value}")
     } else {
         format!("{value:e}")
-    }
-}
-
-/// In what a quantity's errors are counted, after a blank; nothing where they are counted in themselves.
-fn unit(quantity: Quantity) -> &'static str {
-    match quantity {
-        Quantity::PredictedModeProbabilities | Quantity::MixingProbabilities | Quantity::ModeProbabilities => {
-            " of itself"
-        }
-        Quantity::LogLikelihood => "",
-        Quantity::Gain => " √(Pᵢᵢ/Sⱼⱼ)",
-        Quantity::MotionJacobian => " √(P⁻ᵢᵢ/P⁰ⱼⱼ)",
-        Quantity::MeasurementJacobian => " √(Sᵢᵢ/P⁻ⱼⱼ)",
-        Quantity::CrossCovariance => " √(Pᵢᵢ Sⱼⱼ)",
-        quantity if quantity.is_covariance() => " √(Pᵢᵢ Pⱼⱼ)",
-        _ => " standard deviations",
     }
 }

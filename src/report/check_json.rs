@@ -3,7 +3,8 @@
 //! After this file the reader knows the same as from the text, for programs: every case, and every value that is not simply right.
 
 use super::behaviour::{in_a_word, why};
-use super::check::{counts, reason, words};
+use super::check::{reason, words};
+use super::verdict::counts;
 use crate::imm::Quantity;
 use crate::oracle::behaviour::{Behaviour, Grade, Unasked};
 use crate::oracle::check::Report;

@@ -43,6 +43,14 @@ pub(super) fn json(formulas: &ComputedFormulas) -> Value {
 
 /// The equation, what it is in numbers, and the term that is amiss if one is.
 pub(super) fn explained(explanation: &Explanation) -> String {
+    in_numbers(explanation)
+        .iter()
+        .map(|line| wrapped(line, "    "))
+        .collect()
+}
+
+/// The same as two lines: the sum, and what is shown in its place.
+pub(super) fn in_numbers(explanation: &Explanation) -> [String; 2] {
     let Explanation {
         equation,
         numbers,
@@ -57,12 +65,8 @@ pub(super) fn explained(explanation: &Explanation) -> String {
     } else {
         format!("{numbers} = {}", short(*gives))
     };
-    let sum = wrapped(&format!("{equation} = {sum}"), "    ");
-    format!(
-        "{sum}{}",
-        wrapped(
-            &format!("yours {}, the difference {difference}{what}", short(*shown)),
-            "    "
-        )
-    )
+    [
+        format!("{equation} = {sum}"),
+        format!("yours {}, the difference {difference}{what}", short(*shown)),
+    ]
 }

@@ -8,7 +8,7 @@
 //!   published and computed;
 //! - [`conversion`]: where a converted measurement can be trusted;
 //! - [`stability`], [`stability_map`]: two fixed-gain filters, and all pairs of them;
-//! - [`check`], [`check_json`]: the verdict on a program under test; [`search`]: what a search has found;
+//! - [`check`], [`check_json`], [`verdict`]: the verdict on a program under test; [`search`]: what a search has found;
 //! - [`chart`], [`palette`]: what all figures have in common;
 //! - [`page`]: all of the papers' results in one file.
 
@@ -21,6 +21,7 @@ pub mod claims;
 pub mod conversion;
 pub mod divergence;
 pub mod equation;
+mod fault;
 pub mod figure;
 pub mod fit_error;
 mod formula;
@@ -38,6 +39,7 @@ pub mod stability;
 pub mod stability_map;
 pub mod trace;
 pub mod variants;
+pub mod verdict;
 
 use crate::paper::specification::Citation;
 use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Table, TableStyle, Width};

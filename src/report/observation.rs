@@ -13,8 +13,14 @@ pub(super) fn observations(observations: &[Observation]) -> String {
     observations.iter().map(one).collect()
 }
 
+/// Those that alone make a verdict wrong, a sentence each.
+pub(super) fn sentences(observations: &[Observation]) -> Vec<String> {
+    let wrong = observations.iter().filter(|observation| observation.is_wrong());
+    wrong.map(sentence).collect()
+}
+
 /// A sentence.
-fn sentence(observation: &Observation) -> String {
+pub(super) fn sentence(observation: &Observation) -> String {
     match observation {
         Observation::AnswersDiffer {
             id,

@@ -16,7 +16,7 @@ use crate::report::{
 use maud::{Markup, PreEscaped, html};
 
 /// A drawing with its caption.
-fn framed(svg: &str, caption: &str) -> Markup {
+pub fn framed(svg: &str, caption: &str) -> Markup {
     html! {
         figure {
             div.drawing { (PreEscaped(svg)) }

@@ -24,7 +24,7 @@ pub mod book;
 mod cases;
 pub mod content;
 mod errata;
-mod figures;
+pub(super) mod figures;
 mod introduction;
 mod ledger;
 mod links;
@@ -32,7 +32,7 @@ mod markdown;
 pub mod markup;
 mod mistakes;
 mod paper;
-mod table;
+pub(super) mod table;
 
 use super::chart::NotDrawn;
 use super::palette::{self, hexadecimal};
@@ -144,6 +144,17 @@ fn sheet(group: &'static str, file: &str, name: &str, body: Markup) -> Sheet {
 
 /// A page with its head, the menu, and what it was made from.
 fn framed(sheet: &Sheet, all: &[Sheet], content: &Content) -> Markup {
+    let body = html! {
+        a.skip href="#content" { "Skip to the content" }
+        (menu(sheet, all))
+        main #content { (sheet.body) }
+        footer { (made_from(content)) }
+    };
+    document(&title(sheet), &body)
+}
+
+/// A document around its body: it looks as every page of this program does, and it may fetch nothing.
+pub(super) fn document(title: &str, body: &Markup) -> Markup {
     html! {
         (DOCTYPE)
         html lang="en" {
@@ -152,15 +163,10 @@ fn framed(sheet: &Sheet, all: &[Sheet], content: &Content) -> Markup {
                 meta http-equiv="Content-Security-Policy" content=(POLICY);
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
-                title { (title(sheet)) }
+                title { (title) }
                 style { (PreEscaped(STYLE)) (PreEscaped(colours_of_drawings())) }
             }
-            body {
-                a.skip href="#content" { "Skip to the content" }
-                (menu(sheet, all))
-                main #content { (sheet.body) }
-                footer { (made_from(content)) }
-            }
+            body { (body) }
         }
     }
 }
