@@ -30,6 +30,8 @@ pub struct Cli {
 enum Command {
     /// Judge a filter in any language: right to so many digits, or wrong in which equation, and why
     Check(cli::check::CheckArguments),
+    /// Write a small filter with its adapter, which passes `check`, in Python, C++, Octave or Rust: your own takes its place
+    Init(cli::init::InitArguments),
     /// Run a problem file and print every value of every step; with --digits, proven
     Trace(cli::trace::TraceArguments),
     /// List, show, copy and prove the certified cases
@@ -111,6 +113,7 @@ pub fn run(cli: &Cli) -> Result<Done, Refusal> {
         Command::Rule(arguments) => cli::rule::run(arguments),
         Command::Choices(arguments) => Ok(cli::choices::run(arguments)),
         Command::Check(arguments) => cli::check::run(arguments),
+        Command::Init(arguments) => cli::init::run(arguments),
         Command::Trace(arguments) => cli::trace::run(arguments),
         Command::Cases(arguments) => cli::cases::run(arguments),
         Command::Variants(arguments) => cli::variants::run(arguments),

@@ -20,7 +20,7 @@ use std::time::Duration;
 #[derive(Args)]
 #[command(
     after_help = "Exit status: 0 all that was judged is right, 1 something is wrong (with --strict: or was not judged), 2 the check could not be made or nothing was judged. Of a search: 0 nothing was found, 1 something was, 2 nothing could be judged.\n\n\
-    The protocol and the file formats are in spec/formats.md; examples in several languages are in tests/adapters."
+    `immaculate init` writes a small adapter to begin with. The protocol and the file formats are in spec/formats.md; examples in several languages are in tests/adapters."
 )]
 pub struct CheckArguments {
     /// The program under test and its arguments; it is started once and spoken to in JSON lines

@@ -8,6 +8,7 @@ pub mod check;
 pub mod choices;
 pub mod claims;
 pub mod equation;
+pub mod init;
 pub mod outputs;
 pub mod progress;
 pub mod report;

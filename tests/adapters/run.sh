@@ -322,10 +322,37 @@ cpp_filter() {
     done
 }
 
+# What `immaculate init` writes is right as it stands, in each language whose tools are there.
+templates() {
+    local all="44 right of 44 cases" python="$work/venv/bin/python" answers="$work/template-answers" language
+    for language in python octave cpp rust; do
+        judged "init $language" 0 "NEXT" "cd $work/$language" -- immaculate init "$language" "$work/$language"
+        judged "init $language again" 2 "is there already, and is not overwritten" -- immaculate init "$language" "$work/$language"
+    done
+    if [ -x "$python" ]; then
+        expect 0 "$all" -- -- "$python" "$work/python/my_filter.py"
+        sed 's/ + np.outer(m - mean, m - mean)//' "$work/python/my_filter.py" >"$work/mistaken.py"
+        expect 1 "(mixed-spread-omitted; mistake)" "(combined-spread-omitted; mistake)" -- "${short[@]}" -- "$python" "$work/mistaken.py"
+    fi
+    if is_there octave-cli; then
+        octave-cli --no-init-file --eval \
+            "addpath('$work/octave'); immaculate.run_folder('$work/problems', '$answers', my_filter())" >"$work/octave.log" 2>&1 ||
+            cat "$work/octave.log"
+        expect 0 "$all" -- --answers "$answers"
+    fi
+    if is_there g++ && is_there cmake && is_there /usr/include/nlohmann/json.hpp && is_there /usr/include/eigen3; then
+        { cmake -S "$work/cpp" -B "$work/cpp/build" && cmake --build "$work/cpp/build"; } >"$work/cpp.log" 2>&1 || cat "$work/cpp.log"
+        expect 0 "$all" -- -- "$work/cpp/build/my_filter"
+    fi
+    # The filter in Rust is judged by `cargo test --test templates`: here its manifest has what it needs.
+    judged "the filter in Rust" 0 -- cargo check --quiet --manifest-path "$work/rust/Cargo.toml" --target-dir "$work/rust/target"
+}
+
 immaculate cases copy "$work/problems" >/dev/null
 python_filters
 octave_filter
 cpp_filter
+templates
 [ "$failures" -eq 0 ] || {
     echo "$failures verdicts are not as expected"
     exit 1
