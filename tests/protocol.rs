@@ -1031,7 +1031,7 @@ fn exit_statuses_are_those_of_the_help() {
     assert_eq!(strict(&["--case", "update.kalman"]), Some(1), "much was not asked");
     assert_eq!(strict(&[]), Some(0), "this program meets everything");
     for (arguments, words) in [
-        (&["check"][..], "nothing to check"),
+        (&["check", "--strict"][..], "nothing to check"),
         (
             &["check", "--case", "no.such", "--", own, "answer"],
             "no case has what was selected",

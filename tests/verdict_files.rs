@@ -389,6 +389,36 @@ fn a_file_that_cannot_be_written_is_refused_before_the_check() {
     assert_eq!(names(&folder), Vec::<String>::new());
 }
 
+#[test]
+fn a_check_without_a_program_shows_what_a_verdict_is() {
+    let output = immaculate(&["check"]).output().unwrap();
+    assert_eq!(output.status.code(), Some(2), "nothing of the user was judged");
+    let text = String::from_utf8(output.stdout.clone()).unwrap();
+    for words in [
+        "FAULT  mixed.covariance",
+        "(mixed-spread-omitted; mistake)",
+        "YOUR OWN FILTER",
+        "immaculate init python",
+    ] {
+        assert!(text.contains(words), "{words} in\n{text}");
+    }
+    // It is the command that it says it is.
+    let shown = checked(&["--case", "step.n4-m2"], "mixed-spread-omitted");
+    assert!(text.contains("--case step.n4-m2 -- immaculate answer --plant mixed-spread-omitted"));
+    assert!(text.contains(&String::from_utf8(shown.stdout).unwrap()));
+    assert!(error_of(&output).contains("nothing to check"));
+    // Whoever asks for something more meant a program.
+    for more in [
+        &["--json"][..],
+        &["--strict"],
+        &["--kind", "kalman"],
+        &["--badge", "b.svg"],
+    ] {
+        let output = immaculate(&[&["check"], more].concat()).output().unwrap();
+        assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0), "{more:?}");
+    }
+}
+
 /// The program checks its own filter with a variant in it.
 fn checked(arguments: &[&str], variant: &str) -> Output {
     let own = env!("CARGO_BIN_EXE_immaculate");

@@ -6,7 +6,7 @@ use super::outputs::Outputs;
 use super::progress::bar;
 use super::search::{self, About, SearchArguments};
 use super::select::Select;
-use super::{Done, Refusal, json_text, read_file};
+use super::{Done, Refusal, demonstration, json_text, print, read_file};
 use clap::Args;
 use immaculate::oracle::check::{check, check_problems};
 use immaculate::oracle::folder::Folder;
@@ -49,13 +49,25 @@ pub struct CheckArguments {
     outputs: Outputs,
 }
 
+impl CheckArguments {
+    /// Whether nothing is asked for but to be shown what a check is.
+    fn is_bare(&self) -> bool {
+        let has_subject = self.answers.is_some() || !self.command.is_empty();
+        let is_about_something = !self.problems.is_empty() || self.search.time().is_some() || !self.select.is_empty();
+        !(has_subject || is_about_something || self.strict || self.json) && self.outputs.is_empty()
+    }
+}
+
 pub fn run(arguments: &CheckArguments) -> Result<Done, Refusal> {
     arguments.outputs.check()?;
+    if arguments.is_bare() {
+        print(&demonstration::text()?)?;
+    }
     let mut subject: Box<dyn Subject> = match &arguments.answers {
         Some(path) => Box::new(Folder { path: path.clone() }),
         None if arguments.command.is_empty() => {
             return Err(Refusal::request(
-                "nothing to check: give a command after `--`, or a folder of answers with --answers",
+                "nothing to check: give the command of your program after `--`, or a folder of answers with --answers",
             ));
         }
         None => Box::new(Process::new(

@@ -7,6 +7,7 @@ pub mod cases;
 pub mod check;
 pub mod choices;
 pub mod claims;
+pub mod demonstration;
 pub mod equation;
 pub mod init;
 pub mod outputs;

@@ -33,6 +33,11 @@ impl Outputs {
             .flatten()
     }
 
+    /// Whether none is asked for.
+    pub fn is_empty(&self) -> bool {
+        self.paths().next().is_none()
+    }
+
     /// Minutes of checking should not end with a path at which there can be no file.
     pub fn check(&self) -> Result<(), Refusal> {
         self.paths().try_for_each(|path| check_that_a_file_can_be_there(path))

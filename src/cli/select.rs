@@ -21,6 +21,11 @@ pub struct Select {
 }
 
 impl Select {
+    /// Whether nothing is chosen, which is everything.
+    pub fn is_empty(&self) -> bool {
+        self.cases.is_empty() && self.flags.is_empty() && self.kinds.is_empty()
+    }
+
     /// What is asked for, in the library's words.
     pub fn selection(&self) -> Selection {
         Selection {
