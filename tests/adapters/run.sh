@@ -348,11 +348,64 @@ templates() {
     judged "the filter in Rust" 0 -- cargo check --quiet --manifest-path "$work/rust/Cargo.toml" --target-dir "$work/rust/target"
 }
 
+# The examples for CI are what their schemas ask for and do what they say, and readers of JUnit count what the verdict counts.
+continuous_integration() {
+    local tools="$work/tools/bin" ci=templates/ci program
+    if [ ! -x "$work/venv/bin/python" ] || ! python3 -m venv "$work/tools" ||
+        ! "$tools/pip" install --quiet check-jsonschema junitparser; then
+        left_out "the examples for CI: no virtual environment, or no PyPI"
+        return
+    fi
+    local schema=("$tools/check-jsonschema" --builtin-schema)
+    judged "the workflow for GitHub" 0 "ok" -- "${schema[@]}" vendor.github-workflows $ci/github-workflow.yml
+    judged "the action for GitHub" 0 "ok" -- "${schema[@]}" vendor.github-actions $ci/action.yml
+    judged "the job for GitLab" 0 "ok" -- "${schema[@]}" vendor.gitlab-ci --data-transform gitlab-ci $ci/gitlab-ci.yml
+    sed 's/runs-on/runson/' $ci/github-workflow.yml >"$work/wrong.yml"
+    judged "a wrong workflow" 1 "'runs-on' is a required property" -- "${schema[@]}" vendor.github-workflows "$work/wrong.yml"
+
+    # Their scripts, with this program and with this Python.
+    program=${IMMACULATE:+$(realpath "$IMMACULATE")}
+    mkdir "$work/bin"
+    printf '#!/bin/sh\nexec %s "$@"\n' "${program:-cargo run --quiet --release --locked --manifest-path $PWD/Cargo.toml --}" >"$work/bin/immaculate"
+    printf '#!/bin/sh\nexec %s "$@"\n' "$work/venv/bin/python" >"$work/bin/python3"
+    chmod +x "$work/bin/immaculate" "$work/bin/python3"
+    "$tools/python" - "$work" <<'END'
+import sys
+from pathlib import Path
+from ruamel.yaml import YAML
+
+load = lambda name: YAML(typ="safe").load(Path("templates/ci", name))
+job = load("gitlab-ci.yml")["judge-filter"]
+step = load("action.yml")["runs"]["steps"][1]["run"]
+for name, value in {"command": "python3 my_filter.py", "options": "--kind kalman", "folder": "verdict"}.items():
+    step = step.replace("${{ inputs.%s }}" % name, value)
+Path(sys.argv[1], "gitlab.sh").write_text("\n".join(job["script"]))
+Path(sys.argv[1], "github.sh").write_text(step)
+Path(sys.argv[1], "kept").write_text("\n".join([*job["artifacts"]["paths"], job["artifacts"]["reports"]["junit"]]))
+END
+    local here="cd '$work/python' && PATH='$work/bin':\$PATH GITHUB_STEP_SUMMARY='$work/summary.md'"
+    judged "the script for GitLab" 0 "RIGHT on what was judged: my filter" -- bash -c "$here bash -e '$work/gitlab.sh' && ls \$(cat '$work/kept')"
+    judged "the script for GitHub" 0 "RIGHT on what was judged: my filter" "verdict.html" -- \
+        bash -c "$here bash -e '$work/github.sh' && ls verdict && head -n 1 '$work/summary.md' | grep '^### RIGHT'"
+
+    immaculate check "${short[@]}" --junit "$work/junit.xml" -- "$work/venv/bin/python" "$work/mistaken.py" >"$work/verdict" || true
+    local wrong all
+    read -r wrong all <<<"$(tr '\n' ' ' <"$work/verdict" | sed -n 's/.* \([0-9]*\) wrong of \([0-9]*\) cases.*/\1 \2/p')"
+    judged "JUnit" 0 "$all tests, $wrong failures" -- "$tools/python" -c "
+from junitparser import JUnitXml
+read = JUnitXml.fromfile('$work/junit.xml')
+tests = [test for suite in read for test in suite]
+failures = [test for test in tests if any('mixed-spread-omitted' in result.text for result in test.result)]
+assert (read.tests, read.failures) == (len(tests), len(failures))
+print(len(tests), 'tests,', len(failures), 'failures')"
+}
+
 immaculate cases copy "$work/problems" >/dev/null
 python_filters
 octave_filter
 cpp_filter
 templates
+continuous_integration
 [ "$failures" -eq 0 ] || {
     echo "$failures verdicts are not as expected"
     exit 1
