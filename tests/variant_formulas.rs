@@ -1298,6 +1298,7 @@ fn kalman() -> Scene {
     let estimate = |(mean, covariance)| Gaussian { mean, covariance };
     Setup {
         changes: BTreeMap::new(),
+        truths: vec![],
         problem: Problem {
             modes: modes.map(mode).to_vec(),
             chain: vec![vec![0.7, 0.2, 0.1], vec![0.15, 0.6, 0.25], vec![0.05, 0.4, 0.55]],
@@ -1443,6 +1444,7 @@ fn fixed(interaction: Interaction) -> Scene {
 fn scalar() -> Scene {
     Setup {
         changes: BTreeMap::new(),
+        truths: vec![],
         problem: Problem {
             modes: vec![Mode {
                 name: "walk".into(),

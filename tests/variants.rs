@@ -323,7 +323,14 @@ fn every_variant_can_be_evaluated_on_enclosures() {
             });
             let first = first_change(&certified, &doubles, ROUNDING);
             assert_eq!(first, None, "{}", variant.id);
-            assert_eq!(certified.count(), doubles.count(), "{}", variant.id);
+            // Rounding gives a singular covariance an inverse, and an enclosure does not.
+            let count = |values: &Trace| {
+                let places = values.all_places().filter(|place| place.1 != Quantity::Nees);
+                places
+                    .filter(|place| values.get(place.0, place.1, place.2).is_some())
+                    .count()
+            };
+            assert_eq!(count(&certified), count(&doubles), "{}", variant.id);
         }
     }
 }
@@ -468,6 +475,7 @@ fn without_a_detection_nothing_is_computed_from_one() {
             Needs::Conversion => conversions,
             Needs::LinearisedMotion | Needs::LinearisedMeasurement => covariances && !conversions,
             Needs::Detection => false,
+            Needs::Consistency | Needs::Truth => true,
         };
         for quantity in Quantity::ALL.into_iter().filter(|quantity| quantity.exists(has)) {
             for Input::Now(input) | Input::Before(input) in quantity.inputs(has) {
@@ -797,8 +805,10 @@ fn generic(n: usize, modes: usize, sensor: Sensor<f64, Dyn, Dyn>, filter: Filter
     };
     assert_eq!(problem.check(&initial).err(), None);
     let measured = |k: usize| Some(DVector::from_fn(m, |row, _| 8.0 + 5.0 * value(600 + 10 * k + row)));
+    let truth = |k: usize| Some(DVector::from_fn(n, |row, _| 6.0 * value(700 + 10 * k + row)));
     Setup {
         changes: BTreeMap::new(),
+        truths: (0..5).map(truth).collect(),
         problem,
         equations: Equations::standard(),
         initial,
@@ -849,8 +859,14 @@ fn on_enclosures(setup: &Setup<f64>) -> Setup<Enclosure> {
         },
         Sensor::Function { .. } => unreachable!("no problem of this file has one"),
     };
+    let on_enclosures = |vector: &DVector<f64>| vector.map(Enclosure::exact);
     Setup {
         changes: BTreeMap::new(),
+        truths: setup
+            .truths
+            .iter()
+            .map(|truth| truth.as_ref().map(on_enclosures))
+            .collect(),
         equations: Equations::standard(),
         problem: Problem {
             modes: modes.collect(),

@@ -14,7 +14,7 @@ use crate::model::motion::Motion;
 use crate::number::{Field, Real};
 use crate::rule::Rule;
 use nalgebra::allocator::Allocator;
-use nalgebra::{Dim, OMatrix};
+use nalgebra::{Dim, OMatrix, OVector};
 
 impl<T: Real, N: Dim, M: Dim> Problem<T, N, M>
 where
@@ -121,6 +121,16 @@ where
             check_shape(&estimate.covariance, format!("initial.modes[{j}].covariance"), (n, n))?;
         }
         Ok(())
+    }
+
+    /// A true state has the entries of the state, and is finite.
+    pub(super) fn check_truth(&self, truth: &OVector<T, N>) -> Result<(), InvalidProblem> {
+        check_shape(truth, "truth".into(), (self.n().value(), 1))?;
+        check_finite(
+            truth,
+            "truth".into(),
+            "Bar-Shalom, Li and Kirubarajan 2001, section 5.4",
+        )
     }
 
     fn check_chain(&self) -> Result<(), InvalidProblem> {

@@ -11,6 +11,7 @@
 use super::failure::{Cause, Failure, failure, not_definite};
 use super::observer::Observer;
 use super::record::Quantity;
+use super::update::{linearised, update};
 use super::{Equations, Initial, InvalidProblem, Problem, Step};
 use crate::matrix::{Holds, Shapes, all_finite, is_finite};
 use crate::model::PolarComponent;
@@ -56,6 +57,8 @@ where
     equations: Equations<T, N, M>,
     previous: Step<T, N, M>,
     now: Step<T, N, M>,
+    /// The true state of the next step.
+    pub(crate) truth: Option<OVector<T, N>>,
 }
 
 /// The equations, the problem, the step before, and the step so far.
@@ -114,6 +117,7 @@ where
             problem,
             equations,
             now,
+            truth: None,
         }
     }
 
@@ -183,6 +187,42 @@ where
         self.problem.clone_from(problem);
     }
 
+    /// Says what the true state of the next step is, as a simulation knows it; its [`Step::nees`] is then there, and nothing else changes.
+    ///
+    /// Example: the random walk is at 3 where 2 is estimated, with the variance 1.
+    ///
+    /// ```
+    /// use immaculate::filter::Filter;
+    /// use immaculate::{gaussian::Gaussian, imm::{Imm, Initial, Interaction, Problem}};
+    /// use immaculate::model::{Sensor, motion::{Mode, Motion}};
+    /// use nalgebra::{matrix, vector};
+    ///
+    /// let problem = Problem {
+    ///     modes: vec![Mode { name: "walk".into(), motion: Motion::Linear(matrix![1.0]), noise: matrix![1.0] }],
+    ///     filters: vec![Filter::kalman()],
+    ///     interaction: Interaction::Imm,
+    ///     angles: vec![],
+    ///     chain: vec![vec![1.0]],
+    ///     sensor: Sensor::Linear(matrix![1.0]),
+    ///     measurement_noise: matrix![2.0],
+    /// };
+    /// let estimate = Gaussian { mean: vector![0.0], covariance: matrix![1.0] };
+    /// let mut filter = Imm::new(problem, &Initial { modes: vec![estimate], mode_probabilities: vec![1.0] })?;
+    /// filter.set_truth(vector![3.0])?;
+    /// let step = filter.step(Some(&vector![4.0]))?;
+    /// assert_eq!((step.nis[0], step.nees), (Some(4.0), Some(1.0))); // 4²/(2 + 2), (3 − 2)²/1
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`InvalidProblem`] for another number of entries than the state has, or one that is not finite.
+    pub fn set_truth(&mut self, truth: OVector<T, N>) -> Result<(), InvalidProblem> {
+        self.problem.check_truth(&truth)?;
+        self.truth = Some(truth);
+        Ok(())
+    }
+
     /// One step of the cycle, with a measurement or without a detection.
     ///
     /// # Errors
@@ -221,6 +261,7 @@ where
         self.now.clear();
         self.now.step = self.previous.step + 1;
         self.now.measurement = measurement.cloned();
+        self.now.truth = self.truth.take();
         if let Some(z) = measurement {
             self.check_measurement(z)?;
         }
@@ -370,6 +411,8 @@ where
         if problem.has_covariances() {
             now.combined.covariance = (e.combined_covariance)(problem, previous, now, 0);
             observer.computed(Quantity::CombinedCovariance, 0, now);
+            now.nees = (e.nees)(problem, previous, now, 0);
+            observer.computed(Quantity::Nees, 0, now);
         }
     }
 
@@ -402,92 +445,4 @@ where
         }
         Ok(())
     }
-}
-
-/// The update of mode j with the measurement z, and its likelihood. The modes before it must have been updated.
-///
-/// # Errors
-///
-/// [`Failure`] when a covariance is not positive definite.
-pub(crate) fn update<T: Real, N: Dim, M: Dim>(
-    e: &Equations<T, N, M>,
-    problem: &Problem<T, N, M>,
-    previous: &Step<T, N, M>,
-    now: &mut Step<T, N, M>,
-    z: &OVector<T, M>,
-    j: usize,
-    observer: &mut impl Observer<T, N, M>,
-) -> Result<(), Failure>
-where
-    Shapes: Holds<N, M>,
-{
-    let points = (e.predicted_points)(problem, previous, now, j).map_err(|pivot| {
-        not_definite(
-            problem,
-            now,
-            j,
-            Quantity::PredictedMeasurement,
-            "predicted covariance",
-            pivot,
-        )
-    })?;
-    now.predicted_points.push(points);
-    let values = (e.measured_points)(problem, previous, now, j);
-    now.measured_points.push(values);
-    let predicted = (e.predicted_measurement)(problem, previous, now, j);
-    now.predicted_measurements.push(predicted);
-    observer.computed(Quantity::PredictedMeasurement, j, now);
-    let innovation = (e.innovation)(problem, z, now, j);
-    now.innovations.push(innovation);
-    observer.computed(Quantity::Innovation, j, now);
-    let jacobian = (e.measurement_jacobian)(problem, previous, now, j);
-    let has_slopes = jacobian.as_ref().map(all_finite);
-    now.measurement_jacobians.push(jacobian);
-    linearised(problem, now, Quantity::MeasurementJacobian, j, has_slopes, observer)?;
-    let covariance = (e.innovation_covariance)(problem, previous, now, j);
-    now.innovation_covariances.push(covariance);
-    observer.computed(Quantity::InnovationCovariance, j, now);
-    if problem.has_covariances() {
-        let covariance = (e.cross_covariance)(problem, previous, now, j);
-        now.cross_covariances.push(covariance);
-        observer.computed(Quantity::CrossCovariance, j, now);
-    }
-    let gain = (e.gain)(problem, previous, now, j)
-        .map_err(|pivot| not_definite(problem, now, j, Quantity::Gain, "innovation covariance", pivot))?;
-    now.gains.push(gain);
-    observer.computed(Quantity::Gain, j, now);
-    now.updated[j].mean = (e.updated_mean)(problem, previous, now, j);
-    observer.computed(Quantity::UpdatedMean, j, now);
-    if problem.has_covariances() {
-        now.updated[j].covariance = (e.updated_covariance)(problem, previous, now, j);
-        observer.computed(Quantity::UpdatedCovariance, j, now);
-    }
-    let log_likelihood = (e.log_likelihood)(problem, previous, now, j);
-    now.log_likelihoods.push(log_likelihood);
-    observer.computed(Quantity::LogLikelihood, j, now);
-    Ok(())
-}
-
-/// Tells the observer of a Jacobian, if there is one; `has_slopes` says whether its entries are finite.
-///
-/// # Errors
-///
-/// [`Failure`] where a function has no slope.
-fn linearised<T: Real, N: Dim, M: Dim>(
-    problem: &Problem<T, N, M>,
-    now: &mut Step<T, N, M>,
-    value: Quantity,
-    j: usize,
-    has_slopes: Option<bool>,
-    observer: &mut impl Observer<T, N, M>,
-) -> Result<(), Failure>
-where
-    Shapes: Holds<N, M>,
-{
-    match has_slopes {
-        None => {}
-        Some(true) => observer.computed(value, j, now),
-        Some(false) => return Err(failure(problem, now, Some(j), value.name(), Cause::NoSlope)),
-    }
-    Ok(())
 }

@@ -18,9 +18,9 @@ use super::angles::{estimates_near, points_near, wrapped};
 use super::probability;
 use super::problem::Interaction;
 use super::{Problem, Step};
-use crate::filter::{Transform, Update, converted, cubature, extended, kalman, raw, update};
+use crate::filter::{Transform, Update, converted, cubature, extended, kalman, update};
 use crate::gaussian::{log_density, mixture_covariance, mixture_mean};
-use crate::matrix::{Holds, NotPositiveDefinite, Shapes, check_positive_definite, ldl};
+use crate::matrix::{Holds, NotPositiveDefinite, Shapes, check_positive_definite, ldl, quadratic_form};
 use crate::model::motion::Motion;
 use crate::number::{Field, Real};
 use nalgebra::{Dim, OMatrix, OVector};
@@ -92,6 +92,8 @@ where
     pub updated_covariance: Equation<T, N, M, OMatrix<T, N, N>>,
     /// ln Lⱼ, [`log_density`].
     pub log_likelihood: Equation<T, N, M, T>,
+    /// νᵀ S⁻¹ ν, [`quadratic_form`].
+    pub nis: Equation<T, N, M, Option<T>>,
     /// The updated mean without a detection: the predicted one.
     pub undetected_mean: Equation<T, N, M, OVector<T, N>>,
     /// The updated covariance without a detection: the predicted one.
@@ -112,6 +114,8 @@ where
     pub combined_mean: Equation<T, N, M, OVector<T, N>>,
     /// Covariance of the combined estimate, [`mixture_covariance`].
     pub combined_covariance: Equation<T, N, M, OMatrix<T, N, N>>,
+    /// (x − x̂)ᵀ P⁻¹ (x − x̂), [`quadratic_form`]; none where the true state x is not known, or P is singular.
+    pub nees: Equation<T, N, M, Option<T>>,
 }
 
 impl<T: Real, N: Dim, M: Dim> Equations<T, N, M>
@@ -276,6 +280,12 @@ where
                 update::updated_covariance(covariance, &now.gains[j], innovation_covariance)
             },
             log_likelihood: |_, _, now, j| log_density(&now.innovations[j], &ldl(&now.innovation_covariances[j])),
+            nis: |_, _, now, j| {
+                Some(quadratic_form(
+                    &ldl(&now.innovation_covariances[j]),
+                    &now.innovations[j],
+                ))
+            },
 
             undetected_mean: |problem, _, now, j| wrapped(&problem.angles, now.predicted[j].mean.clone()),
             undetected_covariance: |_, _, now, j| now.predicted[j].covariance.clone(),
@@ -304,88 +314,12 @@ where
                 let estimates = estimates_near(problem, &now.updated, mean);
                 mixture_covariance(&now.mode_probabilities, &estimates, mean)
             },
-        }
-    }
-
-    /// R^c evaluated at the combined prediction instead of at the measurement: the noise of the bearing, which moves the measured position
-    /// across, then does not turn the covariance with it.
-    ///
-    /// Source: sustika2015 does not say where (24)-(26) are evaluated; both are in use.
-    ///
-    /// Example: a target expected 8 m away and measured at 10 m, where the bearing's ½ rad is more of an arc.
-    ///
-    /// ```
-    /// use immaculate::filter::Filter;
-    /// use immaculate::{gaussian::Gaussian, imm::{Equations, Imm, Initial, Interaction, Problem}};
-    /// use immaculate::model::{Conversion, Sensor, PolarComponent, motion::{Mode, Motion}};
-    /// use nalgebra::{Matrix2, matrix, vector};
-    ///
-    /// let problem = Problem {
-    ///     modes: vec![Mode { name: "still".into(), motion: Motion::Linear(Matrix2::identity()), noise: Matrix2::zeros() }],
-    ///     filters: vec![Filter::converted(Conversion::Standard)],
-    ///     interaction: Interaction::Imm,
-    ///     angles: vec![],
-    ///     chain: vec![vec![1.0]],
-    ///     sensor: Sensor::Polar {
-    ///         components: vec![PolarComponent::Range, PolarComponent::Bearing],
-    ///         position: [0, 1],
-    ///         location: [0.0, 0.0],
-    ///     },
-    ///     measurement_noise: matrix![4.0, 0.0; 0.0, 0.25],
-    /// };
-    /// let expected = Gaussian { mean: vector![8.0, 0.0], covariance: matrix![4.0, 0.0; 0.0, 75.0] };
-    /// let initial = Initial { modes: vec![expected], mode_probabilities: vec![1.0] };
-    /// let equations = Equations::standard().with_conversion_at_prediction();
-    /// let mut filter = Imm::with_equations(problem, equations, &initial)?;
-    /// let step = filter.step(Some(&vector![10.0, 0.0]))?;
-    /// assert_eq!(step.converted_covariance, Some(matrix![4.0, 0.0; 0.0, 16.0])); // diag(2², 8² · ¼)
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    #[must_use]
-    pub fn with_conversion_at_prediction(self) -> Self {
-        Self {
-            converted_covariance: |problem, _, now, _| {
-                let at = problem.sensor.of(&now.combined_prediction.mean);
-                converted::converted_covariance(problem.conversion()?, &problem.sensor, &at, &problem.measurement_noise)
+            nees: |problem, _, now, _| {
+                let error = wrapped(&problem.angles, now.truth.as_ref()? - &now.combined.mean);
+                let factors = ldl(&now.combined.covariance);
+                check_positive_definite(&factors).ok()?;
+                Some(quadratic_form(&factors, &error))
             },
-            ..self
-        }
-    }
-
-    /// Second moments of filters with points taken about the origin, as zhu2016 (24), (45) and (48) print them: a form, equal in exact
-    /// arithmetic for measurements without angles and rules whose covariance weights sum to one (the (α, β, κ) unscented rule's do only
-    /// for β = α² − 1).
-    #[must_use]
-    pub fn with_raw_moments(self) -> Self {
-        Self {
-            predicted_covariance: |problem, previous, now, j| match &problem.filter(j).predict {
-                Transform::Exact | Transform::Linearised => {
-                    (Self::standard().predicted_covariance)(problem, previous, now, j)
-                }
-                Transform::Points(rule) => {
-                    let mean = &now.predicted[j].mean;
-                    let points = points_near(problem, &now.propagated_points[j], mean);
-                    raw::raw_covariance(&rule.covariance_weights, &points, mean, &problem.modes[j].noise)
-                }
-            },
-            innovation_covariance: |problem, previous, now, j| match &problem.filter(j).update {
-                Update::By(Transform::Points(rule)) => {
-                    let (values, mean) = (&now.measured_points[j], &now.predicted_measurements[j]);
-                    raw::raw_covariance(&rule.covariance_weights, values, mean, &problem.measurement_noise)
-                }
-                _ => (Self::standard().innovation_covariance)(problem, previous, now, j),
-            },
-            cross_covariance: |problem, previous, now, j| match &problem.filter(j).update {
-                Update::By(Transform::Points(rule)) => raw::raw_cross_covariance(
-                    &rule.covariance_weights,
-                    &now.predicted_points[j],
-                    &now.predicted[j].mean,
-                    &now.measured_points[j],
-                    &now.predicted_measurements[j],
-                ),
-                _ => (Self::standard().cross_covariance)(problem, previous, now, j),
-            },
-            ..self
         }
     }
 }

@@ -17,7 +17,10 @@
 //! - [`probability`]: the equations of the mode probabilities;
 //! - [`problem`]: what a run is given, checked;
 //! - [`record`]: every value of one step, and the table of those that are traced;
+//! - [`row`]: what is known of each of these;
 //! - [`equations`]: the table that says which equation gives each value; a variant of the filter exchanges entries of it;
+//! - [`tables`]: some of these;
+//! - [`update`]: the update of one mode, equation by equation;
 //! - [`cycle`]: the one wiring that runs a table;
 //! - [`angles`]: what is averaged where an entry of the state is an angle;
 //! - [`unequal`]: what is mixed where one mode has an entry of the state that another lacks;
@@ -39,7 +42,10 @@ pub mod printed;
 pub mod probability;
 pub mod problem;
 pub mod record;
+pub mod row;
+pub mod tables;
 pub mod unequal;
+pub mod update;
 
 pub use cycle::Imm;
 pub use equations::Equations;

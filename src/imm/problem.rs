@@ -150,14 +150,14 @@ where
         self.filters.iter().find_map(Filter::conversion)
     }
 
-    /// Whether what a value needs is there in mode j, apart from a detection.
+    /// Whether what a value needs is there in mode j, apart from a detection and the true state.
     pub fn has(&self, needed: Needs, j: usize) -> bool {
         match needed {
             Needs::Covariances => self.has_covariances(),
             Needs::Conversion => self.conversion().is_some(),
             Needs::LinearisedMotion => self.filter(j).predict == Transform::Linearised,
             Needs::LinearisedMeasurement => self.filter(j).update == Update::By(Transform::Linearised),
-            Needs::Detection => true,
+            Needs::Detection | Needs::Consistency | Needs::Truth => true,
         }
     }
 }

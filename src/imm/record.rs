@@ -6,6 +6,7 @@
 //! among them: programs draw them in different orders.
 
 use super::entries::Entries;
+pub use super::row::{Needs, Row, Side};
 use crate::gaussian::Gaussian;
 use crate::matrix::{Holds, Shapes};
 use crate::number::Field;
@@ -24,6 +25,8 @@ where
     pub step: usize,
     /// The measurement z, or none at a missed detection and at step 0.
     pub measurement: Option<OVector<T, M>>,
+    /// The true state, where it is known.
+    pub truth: Option<OVector<T, N>>,
     /// cⱼ.
     pub predicted_mode_probabilities: Vec<T>,
     /// μᵢ∣ⱼ as `[j][i]`.
@@ -64,6 +67,8 @@ where
     pub updated: Vec<Gaussian<T, N>>,
     /// ln Lⱼ.
     pub log_likelihoods: Vec<T>,
+    /// νᵀ S⁻¹ ν; none by equations without consistency.
+    pub nis: Vec<Option<T>>,
     /// Λⱼ, the likelihoods relative to the greatest.
     pub relative_likelihoods: Vec<T>,
     /// C, the normaliser of the mode probabilities; 1 where nothing was measured.
@@ -74,6 +79,8 @@ where
     pub mode_probabilities: Vec<T>,
     /// The combined estimate.
     pub combined: Gaussian<T, N>,
+    /// (x − x̂)ᵀ P⁻¹ (x − x̂) of the combined estimate, where the true state x is known and P is definite.
+    pub nees: Option<T>,
 }
 
 impl<T: Field, N: Dim, M: Dim> Step<T, N, M>
@@ -86,6 +93,7 @@ where
         Self {
             step: 0,
             measurement: None,
+            truth: None,
             predicted_mode_probabilities: mode_probabilities.to_vec(),
             mixing_probabilities: vec![mode_probabilities.to_vec(); estimates.len()],
             mixed: estimates.to_vec(),
@@ -106,11 +114,13 @@ where
             gains: Vec::new(),
             updated: estimates.to_vec(),
             log_likelihoods: Vec::new(),
+            nis: Vec::new(),
             relative_likelihoods: Vec::new(),
             evidence: T::one(),
             log_evidence: T::zero(),
             mode_probabilities: mode_probabilities.to_vec(),
             combined: estimates[0].clone(),
+            nees: None,
         }
     }
 
@@ -130,67 +140,12 @@ where
         self.cross_covariances.clear();
         self.gains.clear();
         self.log_likelihoods.clear();
+        self.nis.clear();
+        self.nees = None;
         self.relative_likelihoods.clear();
         self.evidence = T::one();
         self.log_evidence = T::zero();
     }
-}
-
-/// The number of rows or columns of a value.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Side {
-    /// One.
-    One,
-    /// n, the components of the state.
-    State,
-    /// m, the components of the measurement.
-    Measurement,
-    /// r, the modes.
-    Modes,
-}
-
-impl Side {
-    /// The number, for n, m and r.
-    pub fn count(self, n: usize, m: usize, r: usize) -> usize {
-        match self {
-            Self::One => 1,
-            Self::State => n,
-            Self::Measurement => m,
-            Self::Modes => r,
-        }
-    }
-}
-
-/// What must be there for a value to exist.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Needs {
-    /// A filter with covariances of the state.
-    Covariances,
-    /// A detection in this step.
-    Detection,
-    /// A filter that converts measurements.
-    Conversion,
-    /// A filter that linearises the motion.
-    LinearisedMotion,
-    /// A filter that linearises the measurement.
-    LinearisedMeasurement,
-}
-
-/// A row of the table: what is known of a traced value.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Row {
-    /// The name in traces, with a dot where the value is nested.
-    pub name: &'static str,
-    /// The printed equations that give it.
-    pub equation: &'static str,
-    /// Its rows.
-    pub rows: Side,
-    /// Its columns.
-    pub columns: Side,
-    /// Whether each mode has its own; otherwise it belongs to all together.
-    pub is_of_mode: bool,
-    /// What must be there for it to exist.
-    pub needs: &'static [Needs],
 }
 
 /// The table. A row: the value, its name, its rows and columns, of each mode or of all, what it needs, its place in [`Step`], and its
@@ -294,12 +249,16 @@ values! {
         updated[j].covariance, "zhu2016 (53), liu2017 (20)";
     LogLikelihood "log_likelihood" (One, One) each [Detection]
         log_likelihoods[j], "zhu2016 (57), liu2017 (21)";
+    Nis "nis" (One, One) each [Detection, Consistency]
+        nis[j]? square, "Bar-Shalom, Li and Kirubarajan 2001, section 5.4";
     ModeProbabilities "mode_probabilities" (Modes, One) all []
         mode_probabilities, "zhu2016 (58), liu2017 (22)";
     CombinedMean "combined.mean" (State, One) all []
         combined.mean, "zhu2016 (59), liu2017 (23)";
     CombinedCovariance "combined.covariance" (State, State) all [Covariances]
         combined.covariance, "zhu2016 (60), liu2017 (24)";
+    Nees "nees" (One, One) all [Covariances, Truth]
+        nees? square, "Bar-Shalom, Li and Kirubarajan 2001, section 5.4";
 }
 
 /// What a quantity is computed from: another of the same step, or of the step before. Of the same step and mode if both have a mode,
@@ -316,7 +275,7 @@ use Input::{Before, Now};
 use Quantity::{
     CombinedCovariance, CombinedMean, CombinedPredictionCovariance, CombinedPredictionMean, ConvertedCovariance,
     ConvertedMeasurement, CrossCovariance, Gain, Innovation, InnovationCovariance, LogLikelihood, MeasurementJacobian,
-    MixedCovariance, MixedMean, MixingProbabilities, ModeProbabilities, MotionJacobian, PredictedCovariance,
+    MixedCovariance, MixedMean, MixingProbabilities, ModeProbabilities, MotionJacobian, Nees, Nis, PredictedCovariance,
     PredictedMean, PredictedMeasurement, PredictedModeProbabilities, UpdatedCovariance, UpdatedMean,
 };
 
@@ -393,7 +352,8 @@ impl Quantity {
         })
     }
 
-    /// What it is computed from by filters of any kind.
+    /// What it is computed from by filters of any kind. A converted measurement is of what was measured alone; by the convention
+    /// `at-prediction` R^c is of the combined prediction instead.
     fn all_inputs(self, has_detection: bool) -> &'static [Input] {
         match self {
             PredictedModeProbabilities => &[Before(ModeProbabilities)],
@@ -421,7 +381,6 @@ impl Quantity {
                 Now(CombinedPredictionMean),
             ],
             PredictedMeasurement => &[Now(PredictedMean), Now(PredictedCovariance)],
-            // What was measured alone. (By the convention `at-prediction` R^c is of the combined prediction instead.)
             ConvertedMeasurement | ConvertedCovariance => &[],
             Innovation => &[Now(PredictedMeasurement), Now(ConvertedMeasurement)],
             InnovationCovariance => &[
@@ -442,7 +401,7 @@ impl Quantity {
             MeasurementJacobian | UpdatedMean => &[Now(PredictedMean)],
             UpdatedCovariance if has_detection => &[Now(PredictedCovariance), Now(Gain), Now(InnovationCovariance)],
             UpdatedCovariance => &[Now(PredictedCovariance)],
-            LogLikelihood => &[Now(Innovation), Now(InnovationCovariance)],
+            LogLikelihood | Nis => &[Now(Innovation), Now(InnovationCovariance)],
             ModeProbabilities if has_detection => &[Now(PredictedModeProbabilities), Now(LogLikelihood)],
             ModeProbabilities => &[Now(PredictedModeProbabilities)],
             CombinedMean => &[Now(ModeProbabilities), Now(UpdatedMean)],
@@ -452,6 +411,7 @@ impl Quantity {
                 Now(UpdatedCovariance),
                 Now(CombinedMean),
             ],
+            Nees => &[Now(CombinedMean), Now(CombinedCovariance)],
         }
     }
 }

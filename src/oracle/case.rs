@@ -8,6 +8,7 @@ use super::invalid::{Class, Invalid};
 use super::problem::ProblemFile;
 use super::trace::{FORMAT, Trace};
 use crate::file::digest;
+use crate::imm::Needs;
 use include_dir::{Dir, include_dir};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -227,9 +228,11 @@ pub fn read(locked: &Locked) -> Result<Case, BadCase> {
         file: file.into(),
         reason,
     };
-    let problem = ProblemFile::parse(problem_text).map_err(|error| unreadable(&problem_name, error.to_string()))?;
+    let mut problem = ProblemFile::parse(problem_text).map_err(|error| unreadable(&problem_name, error.to_string()))?;
     let value: Value = serde_json::from_str(trace_text).map_err(|error| unreadable(&trace_name, error.to_string()))?;
     let expected = read_expected(&value, &problem).map_err(|error| unreadable(&trace_name, error.to_string()))?;
+    // What a trace was published without, a case never asks for.
+    problem.lacks_consistency = matches!(&expected, Expected::Trace(trace) if !trace.holds(Needs::Consistency));
     Ok(Case {
         problem_text,
         trace_text,

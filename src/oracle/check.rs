@@ -16,7 +16,7 @@ use super::subject::{Answer, Broken, Precision, Ready, Subject, echoed};
 use super::trace::{Dimensions, Trace};
 use super::variant::{Variant, catalogue};
 pub use super::verdict::{CaseReport, Outcome, Report};
-use crate::imm::Quantity;
+use crate::imm::{Needs, Quantity};
 use crate::model::nearest::nearest;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -388,6 +388,11 @@ pub(super) fn judge_answer(
             report.outcome = outcome;
             return Ok((report, None));
         }
+    };
+    let shown = if problem.lacks_consistency {
+        shown.without(Needs::Consistency)
+    } else {
+        shown
     };
     let reference = match question {
         Question::Published(_) => reference_of(problem, expected, conventions, ready.precision)?,

@@ -140,7 +140,7 @@ impl FilterFile {
             Needs::Covariances => !matches!(self, Self::FixedGain { .. }),
             Needs::Conversion => matches!(self, Self::Converted { .. }),
             Needs::LinearisedMotion | Needs::LinearisedMeasurement => matches!(self, Self::Extended {}),
-            Needs::Detection => true,
+            Needs::Detection | Needs::Consistency | Needs::Truth => true,
         }
     }
 }

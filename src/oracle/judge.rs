@@ -376,8 +376,15 @@ fn inputs(problem: &ProblemFile, shown: &Trace, place: Place) -> (BTreeSet<Place
             .get(step - 1)
             .is_some_and(|entry| entry.z.is_some())
     };
+    let knows_truth = |step: usize| {
+        problem
+            .measurements
+            .get(step - 1)
+            .is_some_and(|entry| entry.truth.is_some())
+    };
     let needed_is_there = |step: usize, mode: usize, needed: Needs| match needed {
         Needs::Detection => has_detection(step),
+        Needs::Truth => knows_truth(step),
         _ => problem.has(needed, mode),
     };
     let (mut hidden, mut last_shown) = (BTreeSet::new(), BTreeSet::new());

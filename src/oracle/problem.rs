@@ -75,6 +75,9 @@ pub struct ProblemFile {
     /// Conventions that are not the papers', by the ids of their variants: no key of the file, but what whoever runs it declares.
     #[serde(skip)]
     pub declared: Vec<&'static str>,
+    /// Whether it has no values that need [`Needs::Consistency`]: a case that was published before there were any. No key of the file.
+    #[serde(skip)]
+    pub lacks_consistency: bool,
 }
 
 /// A mode.
@@ -322,6 +325,8 @@ impl ProblemFile {
         match needed {
             // A converted measurement belongs to all modes together.
             Needs::Conversion => (0..self.modes.len()).any(|mode| self.filter_of(mode).has(needed)),
+            Needs::Consistency => !self.lacks_consistency,
+            Needs::Truth => self.measurements.iter().any(|entry| entry.truth.is_some()),
             _ => self.filter_of(mode).has(needed),
         }
     }

@@ -108,6 +108,7 @@ impl<T: Real> Setup<T> {
             if !self.changes.is_empty() {
                 filter.change_unchecked(self.problem_of(index + 1));
             }
+            filter.truth = self.truths.get(index).cloned().flatten();
             let failure = match filter.step_observed(measurement.as_ref(), &mut exchange) {
                 Ok(record) => {
                     done(Some(record));

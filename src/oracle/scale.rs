@@ -113,6 +113,6 @@ fn scale(
             &deviations(Q::PredictedCovariance, n),
             &deviations(Q::InnovationCovariance, m),
         ),
-        Q::LogLikelihood => vec![1.0],
+        Q::LogLikelihood | Q::Nis | Q::Nees => vec![1.0],
     }
 }

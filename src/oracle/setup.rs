@@ -31,6 +31,8 @@ pub struct Setup<T: Real> {
     pub initial: Initial<T, Dyn>,
     /// The measurements of steps 1, 2, …; none at a missed detection.
     pub measurements: Vec<Option<DVector<T>>>,
+    /// The true states of steps 1, 2, …; none where nobody knows it.
+    pub truths: Vec<Option<DVector<T>>>,
     /// The problems of the steps, counted from 1, in which it is another.
     pub changes: BTreeMap<usize, Problem<T, Dyn, Dyn>>,
 }
@@ -147,6 +149,7 @@ impl ProblemFile {
             let there: Vec<f64> = entry.entries().map(|(_, value)| value).collect();
             entry.z.is_some().then(|| vector(&there, number))
         };
+        let truth_of = |entry: &MeasurementAt| entry.truth.as_ref().map(|truth| vector(truth, number));
         let problem = Problem {
             modes: self.modes_in(&functions, number, interval),
             filters: self.filters(number, rule_of)?,
@@ -162,12 +165,17 @@ impl ProblemFile {
         let setup = Setup {
             changes: self.changes(&problem, &functions, number, interval)?,
             problem,
-            equations: Equations::standard(),
+            equations: if self.lacks_consistency {
+                Equations::standard().without_consistency()
+            } else {
+                Equations::standard()
+            },
             initial: Initial {
                 modes: estimates.collect(),
                 mode_probabilities: list(&self.initial.mode_probabilities),
             },
             measurements: self.measurements.iter().map(of_step).collect(),
+            truths: self.measurements.iter().map(truth_of).collect(),
         };
         Ok(setup.varied(&self.declared))
     }

@@ -7,6 +7,7 @@ use super::problem::{
     FORMAT, FORMAT_2, FilterFile, MeasurementFile, ModeFile, ProblemFile, Rows, SensorAt, if_there_at_all,
 };
 use super::well_formed::{check_length, check_matrix};
+use crate::imm::Needs;
 use crate::model::binding::STEP;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -82,6 +83,14 @@ pub struct MeasurementAt {
     )]
     #[schemars(with = "Rows")]
     pub transition: Option<Rows>,
+    /// The true state, as a simulation knows it: what nees is of. Format 2.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "if_there_at_all"
+    )]
+    #[schemars(with = "Vec<f64>")]
+    pub truth: Option<Vec<f64>>,
 }
 
 impl MeasurementAt {
@@ -115,6 +124,11 @@ impl MeasurementAt {
             ("transition", self.transition.is_some()),
         ];
         keys.into_iter().find(|(_, is_there)| *is_there).map(|(key, _)| key)
+    }
+
+    /// The first key that format 1 has not.
+    fn first_new_key(&self) -> Option<&'static str> {
+        self.first_change().or(self.truth.as_ref().map(|_| "truth"))
     }
 }
 
@@ -160,7 +174,7 @@ impl ProblemFile {
             return Some("problem.filter.kind".to_owned());
         }
         let mut steps = self.measurements.iter().enumerate();
-        steps.find_map(|(k, entry)| Some(format!("problem.measurements[{k}].{}", entry.first_change()?)))
+        steps.find_map(|(k, entry)| Some(format!("problem.measurements[{k}].{}", entry.first_new_key()?)))
     }
 
     /// The functions can be read, fit each other, and know how long a step is.
@@ -220,6 +234,22 @@ impl ProblemFile {
             }
         }
         Ok(())
+    }
+
+    /// A true state has the entries of the state, and something is there to be compared with it.
+    pub(super) fn check_truth(&self, k: usize, entry: &MeasurementAt) -> Result<(), Invalid> {
+        let Some(truth) = &entry.truth else { return Ok(()) };
+        let place = format!("problem.measurements[{k}].truth");
+        if !self.filter.has(Needs::Covariances) {
+            let reason =
+                "is given, but filters with fixed gains have no covariance by which an error is large or small";
+            return Err(Invalid::new(Class::Format, place, reason));
+        }
+        check_length(&place, truth.len(), self.state.len())?;
+        match truth.iter().position(|value| !value.is_finite()) {
+            Some(i) => Err(Invalid::new(Class::NotFinite, format!("{place}[{i}]"), "is not finite")),
+            None => Ok(()),
+        }
     }
 
     /// What a step replaces has the right shape.

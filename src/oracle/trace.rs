@@ -6,7 +6,7 @@
 use super::invalid::{Class, Invalid};
 use super::json::is_not_finite;
 pub use super::json::{NotJson, read_json};
-use crate::imm::Quantity;
+use crate::imm::{Needs, Quantity};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
@@ -135,6 +135,27 @@ impl<V> Table<V> {
         let mut table = Self::empty(&dimensions);
         for (cell, own) in table.cells.iter_mut().zip(&self.cells) {
             cell.clone_from(own);
+        }
+        table
+    }
+
+    /// Whether there is a value that needs something.
+    pub(super) fn holds(&self, needed: Needs) -> bool {
+        let mut places = self.all_places();
+        places.any(|(step, quantity, mode)| quantity.needs(needed) && self.get(step, quantity, mode).is_some())
+    }
+
+    /// Without the values that need something.
+    #[must_use]
+    pub(super) fn without(&self, needed: Needs) -> Self
+    where
+        V: Clone,
+    {
+        let mut table = Self::empty(&self.dimensions);
+        for (step, quantity, mode) in self.all_places().filter(|place| !place.1.needs(needed)) {
+            if let Some(value) = self.get(step, quantity, mode) {
+                table.set(step, quantity, mode, value.clone());
+            }
         }
         table
     }

@@ -309,6 +309,7 @@ impl ProblemFile {
             let index = self.sensor_of(entry).ok_or_else(|| self.no_such_sensor(place, entry))?;
             let sensor = &sensors[index];
             self.check_changes(place, entry, sensor)?;
+            self.check_truth(place, entry)?;
             let Some(z) = &entry.z else { continue };
             let field = format!("problem.measurements[{place}].z");
             check_length(&field, z.len(), sensor.noise.len())?;

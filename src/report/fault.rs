@@ -143,7 +143,7 @@ pub(super) fn unit(quantity: Quantity) -> &'static str {
         Quantity::PredictedModeProbabilities | Quantity::MixingProbabilities | Quantity::ModeProbabilities => {
             " of itself"
         }
-        Quantity::LogLikelihood => "",
+        Quantity::LogLikelihood | Quantity::Nis | Quantity::Nees => "",
         Quantity::Gain => " √(Pᵢᵢ/Sⱼⱼ)",
         Quantity::MotionJacobian => " √(P⁻ᵢᵢ/P⁰ⱼⱼ)",
         Quantity::MeasurementJacobian => " √(Sᵢᵢ/P⁻ⱼⱼ)",

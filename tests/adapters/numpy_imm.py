@@ -216,6 +216,7 @@ MEASURED = [
     "cross_covariance",
     "gain",
     "log_likelihood",
+    "nis",
 ]
 
 
@@ -717,6 +718,7 @@ class Mode:
     gain: np.ndarray = None
     updated: tuple = None
     log_likelihood: np.floating = None
+    nis: np.floating = None
 
 
 @dataclass
@@ -794,6 +796,7 @@ class Imm:
                 mode.gain = self.gain(mode)
                 mode.updated = self.updated(mode)
                 mode.log_likelihood = self.log_likelihood(mode)
+                mode.nis = self.nis(mode)
         now.mode_probabilities = (
             self.undetected_probabilities(now) if z is None else self.updated_probabilities(now)
         )
@@ -901,6 +904,10 @@ class Imm:
         s, residual = mode.innovation_covariance, mode.innovation
         _, log_determinant = np.linalg.slogdet(s)
         return -(residual @ np.linalg.solve(s, residual) + log_determinant) / 2 - self.two_pi(mode)
+
+    def nis(self, mode):
+        """The innovation squared, in units of S."""
+        return mode.innovation @ np.linalg.solve(mode.innovation_covariance, mode.innovation)
 
     def two_pi(self, mode):
         """(m/2) ln 2 pi, unless the convention is to leave it out."""

@@ -126,6 +126,7 @@ def update(filter, predicted, seen):
         "cross_covariance": found.cross,
         "gain": gain,
         "log_likelihood": log_density(innovation, covariance),
+        "nis": squared_distance(innovation, covariance),
     }
     if filter["kind"] == "extended":
         values["measurement_jacobian"] = found.jacobian
@@ -143,10 +144,16 @@ def update_with_given_gain(given, predicted, seen):
         "innovation_covariance": given["innovation_covariance"],
         "gain": given["gain"],
         "log_likelihood": log_density(innovation, given["innovation_covariance"]),
+        "nis": squared_distance(innovation, given["innovation_covariance"]),
     }
 
 
 def log_density(deviation, covariance):
     """ln N(ν; 0, S) = −½(νᵀS⁻¹ν + ln|S| + m ln 2π): zhu2016 (57) and liu2017 (21) with their errata."""
-    square = (deviation.transpose() * solve(covariance, deviation))[0, 0]
+    square = squared_distance(deviation, covariance)
     return -(square + covariance.det().log() + len(entries(deviation)) * (2 * arb.pi()).log()) / 2
+
+
+def squared_distance(deviation, covariance):
+    """νᵀS⁻¹ν: Bar-Shalom, Li and Kirubarajan 2001, section 5.4."""
+    return (deviation.transpose() * solve(covariance, deviation))[0, 0]

@@ -6,7 +6,7 @@
 from flint import arb
 
 from balls import Undecided, column, entries, is_zero, wrap, wrap_rows, zeros
-from filters import Estimate, moments, update, update_with_given_gain
+from filters import Estimate, moments, squared_distance, update, update_with_given_gain
 
 
 def run(problem):
@@ -45,6 +45,9 @@ def step(problem, at, probabilities, estimates):
         "mode_probabilities": weighed,
         "combined": mixture(weighed, updates, problem.angles),
     }
+    if "truth" in at:
+        error = wrap_rows(problem.truth(at) - values["combined"].mean, problem.angles)
+        values["nees"] = squared_distance(error, values["combined"].covariance)
     return values, weighed, updates
 
 

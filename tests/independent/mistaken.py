@@ -118,6 +118,10 @@ def mean_weights_for_both(filter, size):
     return replace(rule, covariance_weights=rule.mean_weights)
 
 
+def squared_norm(deviation, _covariance):
+    return (deviation.transpose() * deviation)[0, 0]
+
+
 def without_two_pi(deviation, covariance):
     return RIGHT["density"](deviation, covariance) + len(deviation.entries()) * (2 * arb.pi()).log() / 2
 
@@ -200,6 +204,7 @@ EQUATIONS = [
     ("the weight of zhu2016 (13)", "predicted.mean", "filters.rule_of", with_weight(as_printed_in_zhu2016), "rule.cubature-5.n2"),
     ("the weight of liu2017 (16)", "predicted.mean", "filters.rule_of", with_weight(as_printed_in_liu2017), "rule.simplex-5.n4"),
     ("one weight of the centre", "innovation_covariance", "filters.rule_of", mean_weights_for_both, "rule.unscented-scaled.n2"),
+    ("the error in units of the file", "nees", "imm.squared_distance", squared_norm, "consistency.kalman"),
     ("no 2π", "log_likelihood", "filters.log_density", without_two_pi, "likelihood.generic"),
     ("no determinant", "log_likelihood", "filters.log_density", without_determinant, "likelihood.generic"),
     ("the Jacobian transposed", "predicted.covariance", "formulas.Curved.slopes", slopes_transposed, "heading.extended"),

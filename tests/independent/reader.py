@@ -37,6 +37,10 @@ class Problem:
         """p_ij, row i: from mode i at k−1 to mode j at k."""
         return [[exact(p) for p in row] for row in at.get("transition", self.raw["transition"])]
 
+    def truth(self, at):
+        """The true state at a step."""
+        return column([exact(x) for x in at["truth"]])
+
     def scope(self, j, at):
         """What names stand for in mode j."""
         mode, raw = self.raw["modes"][j], self.raw

@@ -15,6 +15,8 @@ def units_of(values, given):
     }
     for name in ("combined_prediction", "combined"):
         units[name] = of_estimate(values[name], fixed)
+    if "nees" in values:
+        units["nees"] = arb(1)
     if "converted_covariance" in values:
         deviations = deviations_of(values["converted_covariance"])
         units |= {"converted_measurement": deviations, "converted_covariance": products(deviations, deviations)}
@@ -39,6 +41,7 @@ def of_mode(mode, fixed):
         "cross_covariance": products(state, measured),
         "gain": quotients(state, measured),
         "log_likelihood": arb(1),
+        "nis": arb(1),
     }
 
 

@@ -12,7 +12,7 @@ ADDED = {"parameters", "let", "sensors"}  # format 2 may have them
 OF_A_MODE = {"name", "F", "Q"}
 ADDED_TO_A_MODE = {"f", "motion", "let", "parameters", "filter"}
 OF_A_STEP = {"step", "z"}
-ADDED_TO_A_STEP = {"sensor", "T", "F", "Q", "H", "R", "transition"}
+ADDED_TO_A_STEP = {"sensor", "T", "F", "Q", "H", "R", "transition", "truth"}
 
 RULES = {"cubature-3", "cubature-5", "simplex-5"} | {f"gauss-hermite-{order}" for order in (2, 3, 4, 5)}
 FILTERS = {
@@ -160,6 +160,9 @@ def check_step(raw, k, at, size, modes):
         check_covariance(matrix, size, f"{place}.Q")
     if "R" in at:
         check_covariance(at["R"], len(sensor["R"]), f"{place}.R")
+    if "truth" in at:
+        demand(raw["filter"]["kind"] != "fixed-gain", "format", f"{place}.truth")
+        check_numbers(at["truth"], size, f"{place}.truth")
     if at["z"] is None:
         return
     demand(len(at["z"]) == len(sensor["R"]), "shape", f"{place}.z")

@@ -132,6 +132,7 @@ impl Draft {
             conventions: Conventions::default(),
             measurements: Vec::new(),
             declared: Vec::new(),
+            lacks_consistency: false,
         })
     }
 

@@ -13,12 +13,14 @@
 //! - `extended`: extended filters, several sensors, and steps that differ;
 //! - `partial`: measurements of which an entry is missing, and what is exact in a direction;
 //! - `behaviours`: for each kind of filter what it has in none of the others;
+//! - `consistency`: the squares by which a filter is called consistent;
 //! - `rejected`: problems that must be refused;
 //! - `write`: how a new case is certified, written and locked.
 
 mod angles;
 mod behaviours;
 mod chain;
+mod consistency;
 mod converted;
 mod draft;
 mod equations;
@@ -52,6 +54,7 @@ pub fn all() -> Vec<ProblemFile> {
         extended::all(),
         partial::all(),
         behaviours::all(),
+        consistency::all(),
     ]
     .concat()
 }

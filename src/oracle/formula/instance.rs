@@ -8,7 +8,7 @@ use super::tree::{Given, Leaf, Of, Tree, Value};
 use super::value::{Matrix, Number, Term, With, by_rows};
 use crate::filter::Update;
 use crate::filter::extended::{measurement_jacobian, motion_jacobian};
-use crate::imm::{Problem, Quantity};
+use crate::imm::{Problem, Quantity, Step};
 use crate::model::Sensor;
 use crate::number::{Field, Real};
 use crate::oracle::filter_file::FilterFile;
@@ -182,6 +182,11 @@ impl<'a> Instance<'a> {
         all.collect::<Option<_>>().map(Term::Each)
     }
 
+    /// The record of the step.
+    fn record(&self) -> Option<&'a Step<Number, Dyn, Dyn>> {
+        self.run.steps.get(self.place.0)?.as_ref()
+    }
+
     /// A value of the problem.
     fn given(&self, given: Given) -> Option<Term> {
         let (mode, problem) = (self.place.2, self.problem());
@@ -195,15 +200,8 @@ impl<'a> Instance<'a> {
             Given::MotionNoise => Some(problem.modes[mode].noise.clone()),
             Given::MeasurementMatrix => self.measures_by_matrix().then(|| problem.h().into_owned()),
             Given::MeasurementNoise => Some(problem.measurement_noise.clone()),
-            Given::Measurement => column(
-                self.run
-                    .steps
-                    .get(self.place.0)?
-                    .as_ref()?
-                    .measurement
-                    .as_ref()?
-                    .as_slice(),
-            ),
+            Given::Measurement => column(self.record()?.measurement.as_ref()?.as_slice()),
+            Given::Truth => column(self.record()?.truth.as_ref()?.as_slice()),
             Given::Chain => Some(DMatrix::from_fn(r, r, |i, k| problem.chain[i][k])),
             Given::Column => Some(DMatrix::from_fn(r, 1, |i, _| problem.chain[i][mode])),
             Given::Row => Some(DMatrix::from_fn(r, 1, |i, _| problem.chain[mode][i])),

@@ -165,6 +165,7 @@ impl Given {
             Self::MeasurementMatrix => "H",
             Self::MeasurementNoise => "R",
             Self::Measurement => "z",
+            Self::Truth => "truth",
             Self::Chain => "transition",
             Self::Column => "transition[·][j]",
             Self::Row => "transition[j][·]",

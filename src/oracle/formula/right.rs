@@ -135,7 +135,7 @@ fn moved(matrix: &Tree, covariance: Tree, noise: Tree) -> Tree {
 pub(super) fn right(at: &Instance) -> Vec<Tree> {
     use Quantity::{
         CombinedCovariance, CombinedMean, CombinedPredictionCovariance, CombinedPredictionMean, MixedCovariance,
-        MixedMean, MixingProbabilities, ModeProbabilities, PredictedCovariance, PredictedMean,
+        MixedMean, MixingProbabilities, ModeProbabilities, Nees, PredictedCovariance, PredictedMean,
         PredictedModeProbabilities, UpdatedCovariance, UpdatedMean,
     };
     let has_headings = !at.problem().angles.is_empty();
@@ -149,6 +149,7 @@ pub(super) fn right(at: &Instance) -> Vec<Tree> {
         | PredictedMean
         | PredictedCovariance
         | UpdatedMean
+        | Nees
             if has_headings =>
         {
             Vec::new()
@@ -184,6 +185,10 @@ pub(super) fn right(at: &Instance) -> Vec<Tree> {
             each(UpdatedMean),
             each(UpdatedCovariance),
             own(CombinedMean),
+        )],
+        Nees => vec![squared_distance(
+            given(Given::Truth) - own(CombinedMean),
+            own(CombinedCovariance),
         )],
         _ => of_filter(at),
     }
@@ -285,7 +290,7 @@ fn of_points(at: &Instance) -> Vec<Tree> {
 fn of_update(at: &Instance) -> Vec<Tree> {
     use Quantity::{
         ConvertedMeasurement, CrossCovariance, Gain, Innovation, InnovationCovariance, LogLikelihood,
-        ModeProbabilities, PredictedMeasurement, PredictedModeProbabilities, UpdatedCovariance, UpdatedMean,
+        ModeProbabilities, Nis, PredictedMeasurement, PredictedModeProbabilities, UpdatedCovariance, UpdatedMean,
     };
     let update = &at.problem().filter(at.place.2).update;
     let likely = |likelihoods: Tree| {
@@ -307,6 +312,7 @@ fn of_update(at: &Instance) -> Vec<Tree> {
         (UpdatedMean, _) => updated_means(at),
         (UpdatedCovariance, _) => updated_covariances(at),
         (LogLikelihood, _) => vec![likelihood(own(Innovation), own(InnovationCovariance))],
+        (Nis, _) => vec![distance()],
         (ModeProbabilities, _) if !at.has_detection() => vec![own(PredictedModeProbabilities)],
         (ModeProbabilities, _) => vec![
             likely(each(LogLikelihood).unary(Operation::Stacked)),
@@ -362,7 +368,7 @@ fn updated_covariances(at: &Instance) -> Vec<Tree> {
 
 /// ln L = −½ (νᵀ S⁻¹ ν + ln det S) − ½ m ln 2π.
 fn likelihood(innovation: Tree, covariance: Tree) -> Tree {
-    let distance = innovation.clone().transpose() * (covariance.clone().inverse() * innovation);
+    let distance = squared_distance(innovation, covariance.clone());
     let half = (distance + covariance.unary(Operation::LogDeterminant)).unary(Operation::Half);
     half.unary(Operation::Negative) - given(Given::HalfLogOfTurns)
 }
@@ -403,10 +409,14 @@ impl Instance<'_> {
     }
 }
 
+/// aᵀ P⁻¹ a.
+fn squared_distance(deviation: Tree, covariance: Tree) -> Tree {
+    deviation.clone().transpose() * (covariance.inverse() * deviation)
+}
+
 /// The squared distance νᵀ S⁻¹ ν, by which programs decide whether they believe a measurement.
 pub(super) fn distance() -> Tree {
-    let innovation = || own(Quantity::Innovation);
-    innovation().transpose() * (own(Quantity::InnovationCovariance).inverse() * innovation())
+    squared_distance(own(Quantity::Innovation), own(Quantity::InnovationCovariance))
 }
 
 /// Formulas from which the search starts as well, though they are not right: what programs do is often one edit further.

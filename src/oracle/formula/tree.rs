@@ -43,6 +43,7 @@ pub(super) enum Given {
     MeasurementMatrix,
     MeasurementNoise,
     Measurement,
+    Truth,
     Chain,
     /// What leads to the mode, by columns of the chain.
     Column,

@@ -37,6 +37,9 @@ pub(super) fn happen(draw: &mut Draw, mut problem: ProblemFile, offer: &Offer) -
     if lacks {
         lose_entries(draw, &mut problem);
     }
+    if offer.is_format_2 && draw.happens(0.15) {
+        know_truth(draw, &mut problem)?;
+    }
     Some(problem)
 }
 
@@ -296,4 +299,24 @@ fn lose_entries(draw: &mut Draw, problem: &mut ProblemFile) {
             FORMAT_2.clone_into(&mut problem.format);
         }
     }
+}
+
+/// The true states, within some standard deviations of the estimates. Filters with fixed gains have none to be compared with.
+fn know_truth(draw: &mut Draw, problem: &mut ProblemFile) -> Option<()> {
+    if matches!(problem.filter, FilterFile::FixedGain { .. }) {
+        return Some(());
+    }
+    let (trace, _) = run_in_doubles(problem).ok()?;
+    let n = problem.state.len();
+    for entry in &mut problem.measurements {
+        let mean = trace.finite(entry.step, Quantity::CombinedMean, 0)?;
+        let covariance = trace.finite(entry.step, Quantity::CombinedCovariance, 0)?;
+        let near = |i: usize| {
+            let deviation = Real::sqrt(&covariance[i * (n + 1)]);
+            rounded_to_spread(mean[i] + deviation * draw.normal(), deviation)
+        };
+        entry.truth = Some((0..n).map(near).collect());
+    }
+    FORMAT_2.clone_into(&mut problem.format);
+    Some(())
 }

@@ -94,4 +94,5 @@ fn of_step<'a>(entry: &'a mut MeasurementAt, places: &mut Vec<Place<'a>>) {
     places.extend(entry.matrix.as_mut().map(Place::Map));
     places.extend(entry.noise.as_mut().map(Place::Covariance));
     places.extend(entry.transition.as_mut().map(Place::Chain));
+    places.extend(entry.truth.as_mut().map(Place::Mean));
 }

@@ -162,6 +162,9 @@ fn remove_component(problem: &mut ProblemFile, index: usize) {
             }
         }
         entry.matrix.iter_mut().for_each(|rows| remove_column(rows, index));
+        if let Some(truth) = &mut entry.truth {
+            truth.remove(index);
+        }
     }
 }
 
@@ -296,13 +299,14 @@ fn put_first(problem: &mut ProblemFile, index: usize) {
 /// A step without one thing that it has for itself; a missed detection becomes zeros.
 fn of_step(problem: &ProblemFile, step: usize) -> Vec<ProblemFile> {
     let m = problem.dimensions().m[step];
-    let changes: [fn(&mut crate::oracle::steps::MeasurementAt); 6] = [
+    let changes: [fn(&mut crate::oracle::steps::MeasurementAt); 7] = [
         |entry| entry.interval = None,
         |entry| entry.transitions = None,
         |entry| entry.noises = None,
         |entry| entry.matrix = None,
         |entry| entry.noise = None,
         |entry| entry.transition = None,
+        |entry| entry.truth = None,
     ];
     let mut plainer: Vec<ProblemFile> = changes
         .iter()

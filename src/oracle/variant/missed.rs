@@ -5,7 +5,7 @@
 use super::super::setup::Setup;
 use crate::gaussian::log_density;
 use crate::imm::probability::{evidence, mode_probability, relative_likelihood};
-use crate::imm::{Equations, Failure, Problem, Step, cycle};
+use crate::imm::{Equations, Failure, Problem, Step, update};
 use crate::matrix::ldl;
 use crate::number::Real;
 use nalgebra::{DMatrix, DVector, Dyn};
@@ -120,7 +120,7 @@ fn detected<T: Real>(
     now.converted_measurement = (e.converted_measurement)(problem, &z, &now, 0);
     now.converted_covariance = (e.converted_covariance)(problem, &z, &now, 0);
     for i in 0..=j {
-        cycle::update(&e, problem, previous, &mut now, &z, i, &mut ())?;
+        update::update(&e, problem, previous, &mut now, &z, i, &mut ())?;
     }
     Ok(now)
 }

@@ -325,6 +325,7 @@ pub fn apply<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
             equations: before.equations.clone(),
             initial: before.initial.clone(),
             measurements: before.measurements.clone(),
+            truths: before.truths.clone(),
             changes: BTreeMap::new(),
         };
         apply_once(id, &mut of_step);

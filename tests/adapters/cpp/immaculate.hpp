@@ -164,7 +164,7 @@ inline constexpr Quantity QUANTITIES[] = {
     {"converted_measurement", false}, {"converted_covariance", false},
     {"predicted_measurement", true}, {"innovation", true}, {"measurement_jacobian", true}, {"innovation_covariance", true},
     {"cross_covariance", true}, {"gain", true}, {"updated.mean", true}, {"updated.covariance", true}, {"log_likelihood", true},
-    {"mode_probabilities", false}, {"combined.mean", false}, {"combined.covariance", false}};
+    {"nis", true}, {"mode_probabilities", false}, {"combined.mean", false}, {"combined.covariance", false}, {"nees", false}};
 
 template <class T, class = void>
 struct HasSides : std::false_type {};
