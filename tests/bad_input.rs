@@ -22,7 +22,8 @@ use immaculate::rule::gauss_hermite::{MOST_POINTS, gauss_hermite};
 use immaculate::rule::unscented::{Parameters, unscented};
 use immaculate::rule::{InvalidRule, Rule, RuleName};
 use nalgebra::{
-    DMatrix, DVector, Dyn, Matrix2, Matrix3, Matrix4, U0, U2, U3, U4, U8, U100, Vector2, dvector, matrix, vector,
+    DMatrix, DVector, Dyn, Matrix2, Matrix3, Matrix4, SMatrix, U0, U2, U3, U4, U8, U100, Vector2, dvector, matrix,
+    vector,
 };
 use proptest::prelude::*;
 use std::sync::Arc;
@@ -294,6 +295,46 @@ fn covariances_are_positive_semidefinite() {
     assert!(scene.filter().is_ok());
 }
 
+/// The linear scene, whose noises have a covariance in common.
+fn with_noise_in_common(filter: Filter<f64, U4, U2>, entry: f64) -> Scene {
+    let mut scene = linear_scene();
+    let mut of_noises = SMatrix::<f64, 4, 2>::zeros();
+    of_noises[(1, 0)] = entry;
+    scene.problem.filters = vec![filter.with_noise_cross_covariance(of_noises)];
+    scene
+}
+
+/// E[w vᵀ]² is at most E[w²] E[v²]: here the greatest noise of vx is that of the first mode.
+#[test]
+fn noises_have_no_more_in_common_than_they_have() {
+    let scene = linear_scene();
+    let greatest = (scene.problem.modes[0].noise[(1, 1)] * scene.problem.measurement_noise[(0, 0)]).sqrt();
+    assert!(with_noise_in_common(Filter::kalman(), 0.4 * greatest).filter().is_ok());
+    assert_sentence(
+        &with_noise_in_common(Filter::extended(), 1.1 * greatest),
+        "`modes[0].M` is more than Q and R allow: [[Q, M], [Mᵀ, R]] is not positive semidefinite (Simon 2006, section 7.1)",
+    );
+    assert_sentence(
+        &with_noise_in_common(Filter::kalman(), f64::NAN),
+        "`modes[0].M` has an entry that is not finite (Simon 2006, section 7.1)",
+    );
+}
+
+#[test]
+fn correlated_noises_are_for_matrices_and_slopes() {
+    let points = Filter::points(rule_of("cubature-5"));
+    // Points for the motion see no measurement.
+    let moved = Filter {
+        predict: points.predict.clone(),
+        ..Filter::kalman()
+    };
+    assert!(with_noise_in_common(moved, 1e-3).filter().is_ok());
+    assert_sentence(
+        &with_noise_in_common(points, 1e-3),
+        "`modes[0].M` is given to a filter that takes no noise that is correlated; use a Kalman or an extended filter (Simon 2006, section 7.1)",
+    );
+}
+
 #[test]
 fn the_kalman_filter_has_linear_measurements_only() {
     let points = || Filter::points(rule_of("cubature-5"));
@@ -502,6 +543,7 @@ fn at_run_time(n: usize, m: usize, is_polar: bool) -> (Problem<f64, Dyn, Dyn>, I
     let measured = Filter {
         predict: Transform::Exact,
         update: Update::By(Transform::Points(rule())),
+        noise_cross_covariance: None,
     };
     let linear = Sensor::Linear(DMatrix::identity(m, n));
     let polar = Sensor::Polar {
@@ -1529,7 +1571,8 @@ fn any_filter() -> impl Strategy<Value = Filter<f64, U2, U2>> {
         8 => Just(Filter::kalman()),
         8 => any_rule().prop_map(Filter::points),
         2 => Just(Filter::converted(Conversion::ModifiedUnbiased)),
-        4 => (transform(), update).prop_map(|(predict, update)| Filter { predict, update }),
+        4 => (transform(), update).prop_map(|(predict, update)| Filter { predict, update, noise_cross_covariance: None }),
+        2 => any_matrix().prop_map(|of_noises| Filter::kalman().with_noise_cross_covariance(of_noises)),
     ]
 }
 
@@ -1663,7 +1706,7 @@ fn garbage_never_panics_and_either_errs_or_runs() {
                     let sentence = error.to_string();
                     prop_assert!(sentence.starts_with('`'), "{}", sentence);
                     // A shape has no equation of its own.
-                    let has_equation = ["2000 (", "2015 (", "2016 (", "2017 ("].iter().any(|year| sentence.contains(year));
+                    let has_equation = ["2000 (", "2006, ", "2015 (", "2016 (", "2017 ("].iter().any(|year| sentence.contains(year));
                     prop_assert!(has_equation || matches!(error, InvalidProblem::Shape { .. }), "{}", sentence);
                     return Ok(());
                 }
@@ -1784,6 +1827,8 @@ fn problem_test(error: &InvalidProblem) -> &'static str {
         InvalidProblem::NotNormalised { .. } => "rows_of_the_transition_matrix_and_initial_probabilities_sum_to_one",
         InvalidProblem::NotSymmetric { .. } => "covariances_are_symmetric_to_the_last_bit",
         InvalidProblem::NotPositive { .. } => "covariances_are_positive_semidefinite",
+        InvalidProblem::NotJoint { .. } => "noises_have_no_more_in_common_than_they_have",
+        InvalidProblem::CorrelationWithoutSlopes { .. } => "correlated_noises_are_for_matrices_and_slopes",
         InvalidProblem::NotLinear { .. } => "the_kalman_filter_has_linear_measurements_only",
         InvalidProblem::NothingToDrawFrom => "a_filter_with_a_given_gain_draws_no_points",
         InvalidProblem::SomeGiven => "gains_are_given_to_all_modes_or_to_none",

@@ -1044,6 +1044,7 @@ fn half_filters(rule: &str) -> [Filter<f64, U4, U2>; 5] {
     let filter = |predict, update| Filter {
         predict,
         update: Update::By(update),
+        noise_cross_covariance: None,
     };
     [
         filter(Transform::Exact, points(rule)),
@@ -1374,6 +1375,10 @@ impl<T: number::Real> AtRunTime<T> {
                     innovation_covariance: self.matrix(&given.innovation_covariance),
                 }),
             },
+            noise_cross_covariance: filter
+                .noise_cross_covariance
+                .as_ref()
+                .map(|of_noises| self.matrix(of_noises)),
         }
     }
 

@@ -54,6 +54,11 @@ fn what_is_expected_of_a_measurement_is_its_formula() {
 }
 
 #[test]
+fn correlated_noises_that_are_left_out_are_their_formulas() {
+    holds(&correlated(), 2, CORRELATED);
+}
+
+#[test]
 fn range_and_bearing_are_their_formulas() {
     holds(&polar(), 2, POLAR);
 }
@@ -536,6 +541,19 @@ const JACOBIANS: &[Row] = &[
         rows(matrix![1.0, 0.0; 0.0, 180.0 / PI] * polar_slopes(at.xp(j)))
     }),
     ("measurement-by-jacobian", Q::PredictedMeasurement, |at, j| rows(polar_slopes(at.xp(j)) * at.xp(j))),
+];
+
+/// Of [`correlated`]: H P⁻ Hᵀ + R and P⁻ Hᵀ, as of independent noises.
+#[rustfmt::skip]
+const CORRELATED: &[Row] = &[
+    ("noise-correlation-omitted-in-the-innovation", Q::InnovationCovariance, |at, j| {
+        rows(at.h() * at.pp(j) * at.h().transpose() + at.r())
+    }),
+    ("noise-correlation-omitted-in-the-gain", Q::CrossCovariance, |at, j| rows(at.pp(j) * at.h().transpose())),
+    ("noise-correlation-omitted", Q::InnovationCovariance, |at, j| {
+        rows(at.h() * at.pp(j) * at.h().transpose() + at.r())
+    }),
+    ("noise-correlation-omitted", Q::CrossCovariance, |at, j| rows(at.pp(j) * at.h().transpose())),
 ];
 
 /// In step 2 of [`changing`] F is 1.1 times, Q 1.5 times and R 1.3 times that of step 1.
@@ -1437,6 +1455,14 @@ fn fixed(interaction: Interaction) -> Scene {
     for estimate in &mut scene.initial.modes {
         estimate.covariance.fill(0.0);
     }
+    scene
+}
+
+/// [`kalman`] with noises that have something in common.
+fn correlated() -> Scene {
+    let mut scene = kalman();
+    let filter = Filter::kalman().with_noise_cross_covariance(dmatrix![0.4, -0.3; 0.2, 0.5]);
+    scene.problem.filters = vec![filter];
     scene
 }
 

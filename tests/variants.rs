@@ -187,7 +187,7 @@ fn a_variant_changes_nothing_where_it_does_not_apply() {
             left_alone.insert(format!("{:?}", variant.applies));
         }
     }
-    assert_eq!(left_alone.len(), 15, "each limit was met: {left_alone:?}");
+    assert_eq!(left_alone.len(), 16, "each limit was met: {left_alone:?}");
 }
 
 /// Exact, by hand: the words for where a variant can make a difference, in filters of each kind.
@@ -602,6 +602,7 @@ fn scenes() -> Vec<Scene> {
         ("scaled unscented", other_order),
         ("square", square(2)),
         ("extended", extended()),
+        ("correlated noises", correlated()),
         ("changing steps", changing()),
         ("heading", heading(Filter::extended())),
         ("heading with points", heading(points(RULE))),
@@ -629,6 +630,15 @@ fn linear(modes: usize) -> Setup<f64> {
 fn square(modes: usize) -> Setup<f64> {
     let h = matrix(2, 2, 70, 0.3) + DMatrix::identity(2, 2);
     generic(2, modes, Sensor::Linear(h), Filter::kalman())
+}
+
+/// Kalman filters whose noises have something in common.
+fn correlated() -> Setup<f64> {
+    let mut setup = linear(3);
+    let filter = Filter::kalman().with_noise_cross_covariance(matrix(4, 2, 90, 0.4));
+    setup.problem.filters = vec![filter];
+    assert_eq!(setup.problem.check(&setup.initial).err(), None);
+    setup
 }
 
 /// Filters with fixed gains: those of the initial covariances, so that the filter follows what it measures.
@@ -909,6 +919,10 @@ fn filter_on_enclosures(filter: &Filter<f64, Dyn, Dyn>) -> Filter<Enclosure, Dyn
                 innovation_covariance: given.innovation_covariance.map(Enclosure::exact),
             }),
         },
+        noise_cross_covariance: filter
+            .noise_cross_covariance
+            .as_ref()
+            .map(|of_noises| of_noises.map(Enclosure::exact)),
     }
 }
 

@@ -15,7 +15,7 @@ use crate::matrix::{Holds, Shapes};
 use crate::model::Conversion;
 use crate::number::Field;
 use crate::rule::Rule;
-use nalgebra::Dim;
+use nalgebra::{Dim, OMatrix};
 
 /// How the moments of a Gaussian go through a function.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,7 +55,8 @@ where
 /// use nalgebra::{U2, U4};
 ///
 /// let rule = RuleName::ThirdDegree.rule()?;
-/// let filter = Filter::<f64, U4, U2> { predict: Transform::Exact, update: Update::By(Transform::Points(rule)) };
+/// let update = Update::By(Transform::Points(rule));
+/// let filter = Filter::<f64, U4, U2> { predict: Transform::Exact, update, noise_cross_covariance: None };
 /// assert!(filter.has_covariances());
 /// # Ok::<(), immaculate::rule::InvalidRule>(())
 /// ```
@@ -68,6 +69,9 @@ where
     pub predict: Transform<T, N>,
     /// What is done with a measurement.
     pub update: Update<T, N, M>,
+    /// M = E[w vᵀ] of process and measurement noise, N × M; none where they are independent. For updates by a matrix or its slopes:
+    /// [`correlated`](super::correlated).
+    pub noise_cross_covariance: Option<OMatrix<T, N, M>>,
 }
 
 impl<T: Field, N: Dim, M: Dim> Filter<T, N, M>
@@ -79,6 +83,7 @@ where
         Self {
             predict: Transform::Exact,
             update: Update::By(Transform::Exact),
+            noise_cross_covariance: None,
         }
     }
 
@@ -118,6 +123,7 @@ where
         Self {
             predict: Transform::Linearised,
             update: Update::By(Transform::Linearised),
+            noise_cross_covariance: None,
         }
     }
 
@@ -126,6 +132,7 @@ where
         Self {
             predict: Transform::Points(rule.clone()),
             update: Update::By(Transform::Points(rule)),
+            noise_cross_covariance: None,
         }
     }
 
@@ -173,6 +180,7 @@ where
         Self {
             predict: Transform::Exact,
             update: Update::Converted(conversion),
+            noise_cross_covariance: None,
         }
     }
 
@@ -223,6 +231,44 @@ where
         Self {
             predict: Transform::Exact,
             update: Update::Given(gain),
+            noise_cross_covariance: None,
+        }
+    }
+
+    /// The same where process and measurement noise are correlated.
+    ///
+    /// Source: Simon, Optimal State Estimation, 2006, section 7.1.
+    ///
+    /// Example: the noises cancel in the innovation, and the measurement is believed more.
+    ///
+    /// ```
+    /// use immaculate::filter::Filter;
+    /// use immaculate::{gaussian::Gaussian, imm::{Imm, Initial, Interaction, Problem}};
+    /// use immaculate::model::{Sensor, motion::{Mode, Motion}};
+    /// use nalgebra::{matrix, vector};
+    ///
+    /// let problem = Problem {
+    ///     modes: vec![Mode { name: "walk".into(), motion: Motion::Linear(matrix![1.0]), noise: matrix![1.0] }],
+    ///     filters: vec![Filter::kalman().with_noise_cross_covariance(matrix![-1.0])],
+    ///     interaction: Interaction::Imm,
+    ///     angles: vec![],
+    ///     chain: vec![vec![1.0]],
+    ///     sensor: Sensor::Linear(matrix![1.0]),
+    ///     measurement_noise: matrix![4.0],
+    /// };
+    /// let estimate = Gaussian { mean: vector![0.0], covariance: matrix![3.0] };
+    /// let mut filter = Imm::new(problem, &Initial { modes: vec![estimate], mode_probabilities: vec![1.0] })?;
+    /// let step = filter.step(Some(&vector![2.0]))?;
+    /// // C = 3 + 1 − 1, S = 3 + 1 − 2 · 1 + 4, and 0 + 3/6 · 2.
+    /// assert_eq!((step.cross_covariances[0], step.innovation_covariances[0]), (matrix![3.0], matrix![6.0]));
+    /// assert_eq!(step.combined.mean, vector![1.0]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn with_noise_cross_covariance(self, noise_cross_covariance: OMatrix<T, N, M>) -> Self {
+        Self {
+            noise_cross_covariance: Some(noise_cross_covariance),
+            ..self
         }
     }
 

@@ -13,6 +13,7 @@
 //!
 //! - [`kind`]: which of these a filter is, said once;
 //! - [`kalman`]: the linear equations;
+//! - [`correlated`]: the same where the noises of motion and measurement are correlated;
 //! - [`extended`]: the same at the slopes of motion and measurement;
 //! - [`cubature`]: the same moments by points and weights, in the centred form of liu2017;
 //! - [`raw`]: the moments about the origin that zhu2016 prints, equal in exact arithmetic and poorer in floating point;
@@ -55,6 +56,7 @@
 //! ```
 
 pub mod converted;
+pub mod correlated;
 pub mod cubature;
 pub mod extended;
 pub mod fixed_gain;

@@ -14,7 +14,7 @@ use crate::model::motion::Motion;
 use crate::number::{Field, Real};
 use crate::rule::Rule;
 use nalgebra::allocator::Allocator;
-use nalgebra::{Dim, OMatrix, OVector};
+use nalgebra::{DMatrix, Dim, OMatrix, OVector};
 
 impl<T: Real, N: Dim, M: Dim> Problem<T, N, M>
 where
@@ -73,6 +73,7 @@ where
         self.check_sensor()?;
         self.check_angles()?;
         self.check_filters()?;
+        self.check_noise_cross_covariances()?;
         check_length("initial.modes", estimates.modes.len(), self.modes.len(), "zhu2016 (55)")
     }
 
@@ -140,6 +141,33 @@ where
             let field = format!("transition[{i}]");
             check_length(&field, row.len(), modes, equation)?;
             check_probabilities(row, &field, equation)?;
+        }
+        Ok(())
+    }
+
+    /// The noises of motion and measurement have a joint covariance, and the filter takes them.
+    fn check_noise_cross_covariances(&self) -> Result<(), InvalidProblem> {
+        let (n, m) = (self.n().value(), self.m().value());
+        for (j, mode) in self.modes.iter().enumerate() {
+            let filter = self.filter(j);
+            let Some(of_noises) = &filter.noise_cross_covariance else {
+                continue;
+            };
+            let field = format!("modes[{j}].M");
+            if !matches!(filter.update, Update::By(Transform::Exact | Transform::Linearised)) {
+                return Err(InvalidProblem::CorrelationWithoutSlopes { field });
+            }
+            check_shape(of_noises, field.clone(), (n, m))?;
+            check_finite(of_noises, field.clone(), "Simon 2006, section 7.1")?;
+            let joint = DMatrix::from_fn(n + m, n + m, |row, column| match (row < n, column < n) {
+                (true, true) => mode.noise[(row, column)].clone(),
+                (true, false) => of_noises[(row, column - n)].clone(),
+                (false, true) => of_noises[(column, row - n)].clone(),
+                (false, false) => self.measurement_noise[(row - n, column - n)].clone(),
+            });
+            if !is_positive_semidefinite(&joint) {
+                return Err(InvalidProblem::NotJoint { field });
+            }
         }
         Ok(())
     }

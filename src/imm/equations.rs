@@ -18,7 +18,7 @@ use super::angles::{estimates_near, points_near, wrapped};
 use super::probability;
 use super::problem::Interaction;
 use super::{Problem, Step};
-use crate::filter::{Transform, Update, converted, cubature, extended, kalman, update};
+use crate::filter::{Transform, Update, converted, correlated, cubature, extended, kalman, update};
 use crate::gaussian::{log_density, mixture_covariance, mixture_mean};
 use crate::matrix::{Holds, NotPositiveDefinite, Shapes, check_positive_definite, ldl, quadratic_form};
 use crate::model::motion::Motion;
@@ -247,19 +247,29 @@ where
                 Update::Given(given) => given.innovation_covariance.clone(),
                 Update::By(Transform::Exact | Transform::Linearised) | Update::Converted(_) => {
                     let (h, noise) = (measurement_matrix(problem, now, j), noise(problem, now, j));
-                    kalman::innovation_covariance(&h, &now.predicted[j].covariance, noise)
+                    let covariance = &now.predicted[j].covariance;
+                    match &problem.filter(j).noise_cross_covariance {
+                        Some(of_noises) => correlated::innovation_covariance(&h, covariance, noise, of_noises),
+                        None => kalman::innovation_covariance(&h, covariance, noise),
+                    }
                 }
             },
-            cross_covariance: |problem, _, now, j| match &problem.filter(j).update {
-                Update::By(Transform::Points(rule)) => cubature::cross_covariance(
-                    &problem.sensor,
-                    &rule.covariance_weights,
-                    &now.predicted_points[j],
-                    &now.predicted[j].mean,
-                    &now.measured_points[j],
-                    &now.predicted_measurements[j],
-                ),
-                _ => kalman::cross_covariance(&now.predicted[j].covariance, &measurement_matrix(problem, now, j)),
+            cross_covariance: |problem, _, now, j| {
+                let (filter, covariance) = (problem.filter(j), &now.predicted[j].covariance);
+                match (&filter.update, &filter.noise_cross_covariance) {
+                    (Update::By(Transform::Points(rule)), _) => cubature::cross_covariance(
+                        &problem.sensor,
+                        &rule.covariance_weights,
+                        &now.predicted_points[j],
+                        &now.predicted[j].mean,
+                        &now.measured_points[j],
+                        &now.predicted_measurements[j],
+                    ),
+                    (_, Some(of_noises)) => {
+                        correlated::cross_covariance(covariance, &measurement_matrix(problem, now, j), of_noises)
+                    }
+                    (_, None) => kalman::cross_covariance(covariance, &measurement_matrix(problem, now, j)),
+                }
             },
 
             gain: |problem, _, now, j| {

@@ -73,6 +73,22 @@ pub enum InvalidProblem {
         /// The equation that needs it.
         equation: &'static str,
     },
+    /// Process and measurement noise are more correlated than their covariances allow.
+    #[error(
+        "`{field}` is more than Q and R allow: [[Q, M], [Mᵀ, R]] is not positive semidefinite (Simon 2006, section 7.1)"
+    )]
+    NotJoint {
+        /// The cross-covariance.
+        field: String,
+    },
+    /// A filter that has no matrix of the measurement was given correlated noises.
+    #[error(
+        "`{field}` is given to a filter that takes no noise that is correlated; use a Kalman or an extended filter (Simon 2006, section 7.1)"
+    )]
+    CorrelationWithoutSlopes {
+        /// The cross-covariance.
+        field: String,
+    },
     /// A Kalman filter was given a motion or a measurement that is not linear.
     #[error(
         "`{field}` is not linear, and the Kalman filter takes matrices; use an extended, unscented or cubature filter (zhu2016 (42))"

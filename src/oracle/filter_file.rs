@@ -23,19 +23,23 @@ pub const MIXINGS: [&str; 2] = ["mixed", UNMIXED];
 pub const UNMIXED: &str = "unmixed";
 
 /// The kinds of filter whose name is not that of a rule.
-const OTHER_KINDS: [&str; 6] = [
+const OTHER_KINDS: [&str; 7] = [
     "kalman",
     "extended",
     "unscented",
     "converted",
     "fixed-gain",
     "fixed-gain-unmixed",
+    CORRELATED_NOISE,
 ];
+
+/// What a filter must take, beside its own kind, where the noises of motion and measurement are correlated.
+pub(super) const CORRELATED_NOISE: &str = "correlated-noise";
 
 /// The families of filters, which differ in their equations and not only in a rule: [`FilterFile::family`].
 pub const FAMILIES: [&str; 6] = ["kalman", "extended", "cubature", "unscented", "converted", "fixed-gain"];
 
-/// The names of all kinds of filter, [`FilterFile::name`].
+/// The names of all kinds of filter, [`FilterFile::name`], and of what not every one of a kind takes.
 pub fn kinds() -> impl Iterator<Item = &'static str> {
     OTHER_KINDS.into_iter().chain(RULES)
 }

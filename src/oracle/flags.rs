@@ -3,7 +3,7 @@
 //! After this file the reader knows every word by which cases are marked and chosen, and what a problem with it is like.
 
 /// Every flag, and what a problem with it is like.
-pub const FLAGS: [(&str, &str); 54] = [
+pub const FLAGS: [(&str, &str); 55] = [
     (
         "single-equation",
         "All is trivial but one equation, or one group of them.",
@@ -139,4 +139,8 @@ pub const FLAGS: [(&str, &str); 54] = [
     ("input", "A known input, or another offset, is part of the motion."),
     ("rejected", "It must be refused."),
     ("truth", "The true state is given in some steps: the error is squared."),
+    (
+        "correlated-noise",
+        "The noises of motion and measurement have something in common.",
+    ),
 ];

@@ -322,6 +322,8 @@ pub struct ModeModels {
     pub parameters: ModelParameters,
     /// The filter of this mode, if it is another than the problem's.
     pub filter: Option<FilterFile>,
+    /// M = E[w vᵀ] of the noises of motion and measurement, if they are correlated.
+    pub noise_cross_covariance: Option<Rows>,
 }
 
 /// A mode as it stands in the file.
@@ -374,6 +376,15 @@ pub(super) struct ModeKeys {
     )]
     #[schemars(with = "FilterFile")]
     filter: Option<FilterFile>,
+    /// Covariance of process and measurement noise, n × m.
+    #[serde(
+        default,
+        rename = "M",
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "if_there_at_all"
+    )]
+    #[schemars(with = "Rows")]
+    noise_cross_covariance: Option<Rows>,
 }
 
 impl TryFrom<ModeKeys> for ModeFile {
@@ -405,6 +416,7 @@ impl TryFrom<ModeKeys> for ModeFile {
                 definitions: keys.definitions,
                 parameters: keys.parameters,
                 filter: keys.filter,
+                noise_cross_covariance: keys.noise_cross_covariance,
             },
         })
     }
@@ -422,6 +434,7 @@ impl From<ModeFile> for ModeKeys {
             definitions: mode.models.definitions,
             parameters: mode.models.parameters,
             filter: mode.models.filter,
+            noise_cross_covariance: mode.models.noise_cross_covariance,
         }
     }
 }

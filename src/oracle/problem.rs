@@ -3,6 +3,7 @@
 //! After this file the reader knows the formats `immaculate-problem/1` and `/2` from the code's side (`spec/formats.md` is their
 //! description). Format 1 is format 2 without what [`super::models`] adds. What must be true of a file is in `well_formed`.
 
+use super::filter_file::CORRELATED_NOISE;
 pub use super::filter_file::{FAMILIES, FilterFile, FixedGainFile, MIXINGS, RULES, UNMIXED, kinds};
 use super::invalid::{Class, Invalid};
 use super::models::{ComponentFile, ModeKeys, ModeModels, ModelParameters};
@@ -308,7 +309,7 @@ impl ProblemFile {
         own.unwrap_or(&self.filter)
     }
 
-    /// The filters of the modes by [`FilterFile::name`], each once.
+    /// The filters of the modes by [`FilterFile::name`], each once, and what they must take beside that.
     pub fn kinds(&self) -> Vec<&str> {
         let mut kinds = Vec::new();
         for mode in 0..self.modes.len() {
@@ -316,6 +317,13 @@ impl ProblemFile {
             if !kinds.contains(&name) {
                 kinds.push(name);
             }
+        }
+        if self
+            .modes
+            .iter()
+            .any(|mode| mode.models.noise_cross_covariance.is_some())
+        {
+            kinds.push(CORRELATED_NOISE);
         }
         kinds
     }

@@ -239,6 +239,12 @@ impl ProblemFile {
             if let Some(rows) = entry.rows() {
                 changed.sensor = changed.sensor.only(&rows);
                 changed.measurement_noise = changed.measurement_noise.select_rows(&rows).select_columns(&rows);
+                for filter in &mut changed.filters {
+                    filter.noise_cross_covariance = filter
+                        .noise_cross_covariance
+                        .as_ref()
+                        .map(|of_noises| of_noises.select_columns(&rows));
+                }
             }
             changes.insert(entry.step, changed);
         }
@@ -318,7 +324,30 @@ impl ProblemFile {
                 },
             })
         };
-        self.filters_with_places().into_iter().map(filter_of).collect()
+        let filters: Vec<_> = self
+            .filters_with_places()
+            .into_iter()
+            .map(filter_of)
+            .collect::<Result<_, _>>()?;
+        Ok(self.with_noise_cross_covariances(filters, number))
+    }
+
+    /// The filters with the correlation of the noises of each mode, if any mode has one: one a mode then.
+    fn with_noise_cross_covariances<T: Real>(
+        &self,
+        filters: Vec<Filter<T, Dyn, Dyn>>,
+        number: fn(f64) -> T,
+    ) -> Vec<Filter<T, Dyn, Dyn>> {
+        let of_mode = |mode: &ModeFile| Some(matrix(mode.models.noise_cross_covariance.as_ref()?, number));
+        if self.modes.iter().all(|mode| of_mode(mode).is_none()) {
+            return filters;
+        }
+        let modes = self.modes.iter().enumerate();
+        let with = |(j, mode): (usize, &ModeFile)| Filter {
+            noise_cross_covariance: of_mode(mode),
+            ..filters.get(j).unwrap_or(&filters[0]).clone()
+        };
+        modes.map(with).collect()
     }
 
     /// The filters with their places in the file: one for all modes, or one a mode where a mode has its own.

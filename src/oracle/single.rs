@@ -13,7 +13,7 @@ use serde::de::IgnoredAny;
 use serde_json::{Map, Value, json};
 
 /// The keys of a mode that stand at the top of a short problem.
-pub(super) const KEYS: [&str; 4] = ["F", "f", "motion", "Q"];
+pub(super) const KEYS: [&str; 5] = ["F", "f", "motion", "Q", "M"];
 
 /// What tells a short problem from a long one.
 #[derive(Deserialize)]

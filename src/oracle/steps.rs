@@ -291,6 +291,7 @@ fn new_key_of_mode(mode: &ModeFile) -> Option<&'static str> {
         ("let", !models.definitions.is_empty()),
         ("parameters", !models.parameters.is_empty()),
         ("filter", models.filter.is_some()),
+        ("M", models.noise_cross_covariance.is_some()),
     ];
     keys.into_iter().find(|(_, is_there)| *is_there).map(|(key, _)| key)
 }

@@ -37,6 +37,7 @@ impl ProblemFile {
         check_size(&self.dimensions())?;
         self.check_functions()?;
         self.check_filters()?;
+        self.check_noise_cross_covariances()?;
         self.check_measurements()?;
         self.check_values()
     }
@@ -174,6 +175,30 @@ impl ProblemFile {
                 }
                 None => {}
             }
+        }
+        Ok(())
+    }
+
+    /// What is said of correlated noises belongs to a sensor, and to a filter that takes it.
+    fn check_noise_cross_covariances(&self) -> Result<(), Invalid> {
+        for (j, mode) in self.modes.iter().enumerate() {
+            let Some(rows) = &mode.models.noise_cross_covariance else {
+                continue;
+            };
+            let place = format!("problem.modes[{j}].M");
+            let filter = self.filter_of(j);
+            if !matches!(filter, FilterFile::Kalman {} | FilterFile::Extended {}) {
+                let reason = format!(
+                    "is given, and the filter is {}; only kalman and extended have the matrix of the measurement that it needs",
+                    filter.name()
+                );
+                return Err(Invalid::new(Class::Unknown, place, reason));
+            }
+            if !self.sensors.is_empty() {
+                let reason = "is given, and there are further sensors; the noise of one measurement is meant";
+                return Err(Invalid::new(Class::Unknown, place, reason));
+            }
+            check_matrix(&place, rows, self.state.len(), self.noise.len())?;
         }
         Ok(())
     }
@@ -380,9 +405,10 @@ fn of_problem(error: &InvalidProblem) -> Invalid {
         InvalidProblem::NotFinite { .. } => Class::NotFinite,
         InvalidProblem::NegativeProbability { .. } | InvalidProblem::NotNormalised { .. } => Class::NotAProbability,
         InvalidProblem::NotSymmetric { .. } => Class::NotSymmetric,
-        InvalidProblem::NotPositive { .. } => Class::NotPositiveDefinite,
+        InvalidProblem::NotPositive { .. } | InvalidProblem::NotJoint { .. } => Class::NotPositiveDefinite,
         InvalidProblem::NotLinear { .. }
         | InvalidProblem::SomeGiven
+        | InvalidProblem::CorrelationWithoutSlopes { .. }
         | InvalidProblem::OtherKind
         | InvalidProblem::NothingToDrawFrom
         | InvalidProblem::TwoConversions

@@ -110,11 +110,14 @@ class Seen:
     noise: arb_mat
     z: arb_mat
     angles: list
+    rows: list | None = None  # which entries of the sensor's measurement these are
 
 
 def update(filter, predicted, seen):
     """liu2017 (19)-(21), with the exponent −½ of a density: what a mode computes from a measurement, and its new estimate."""
     found = moments(filter, seen.function, predicted, seen.angles)
+    if "M" in filter:
+        found = with_correlated_noises(found, seen, filter["M"])
     innovation = wrap_rows(seen.z - found.mean, seen.angles)
     covariance = found.covariance + seen.noise
     gain = solve(covariance.transpose(), found.cross.transpose()).transpose()
@@ -131,6 +134,14 @@ def update(filter, predicted, seen):
     if filter["kind"] == "extended":
         values["measurement_jacobian"] = found.jacobian
     return updated, values
+
+
+def with_correlated_noises(found, seen, shared):
+    """Simon 2006, section 7.1: E[(x − x̂⁻)vᵀ] is M = E[w vᵀ], so that C has M, and S has H M and its transpose."""
+    shared = arb_mat([[row[k] for k in seen.rows] for row in shared.table()])
+    slopes = seen.function.matrix if found.jacobian is None else found.jacobian
+    both = slopes * shared
+    return Moments(found.mean, found.covariance + both + both.transpose(), found.cross + shared, found.jacobian)
 
 
 def update_with_given_gain(given, predicted, seen):

@@ -122,6 +122,10 @@ def squared_norm(deviation, _covariance):
     return (deviation.transpose() * deviation)[0, 0]
 
 
+def independent_noises(found, _seen, _shared):
+    return found
+
+
 def without_two_pi(deviation, covariance):
     return RIGHT["density"](deviation, covariance) + len(deviation.entries()) * (2 * arb.pi()).log() / 2
 
@@ -205,6 +209,7 @@ EQUATIONS = [
     ("the weight of liu2017 (16)", "predicted.mean", "filters.rule_of", with_weight(as_printed_in_liu2017), "rule.simplex-5.n4"),
     ("one weight of the centre", "innovation_covariance", "filters.rule_of", mean_weights_for_both, "rule.unscented-scaled.n2"),
     ("the error in units of the file", "nees", "imm.squared_distance", squared_norm, "consistency.kalman"),
+    ("noises taken for independent", "innovation_covariance", "filters.with_correlated_noises", independent_noises, "correlated.kalman"),
     ("no 2π", "log_likelihood", "filters.log_density", without_two_pi, "likelihood.generic"),
     ("no determinant", "log_likelihood", "filters.log_density", without_determinant, "likelihood.generic"),
     ("the Jacobian transposed", "predicted.covariance", "formulas.Curved.slopes", slopes_transposed, "heading.extended"),

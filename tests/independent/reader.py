@@ -28,6 +28,8 @@ class Problem:
         self.filters = [{**mode.get("filter", raw["filter"])} for mode in raw["modes"]]
         for j, given in enumerate(raw["filter"].get("modes", [])):
             self.filters[j] |= {key: matrix(given[key]) for key in ("gain", "innovation_covariance")}
+        for filter, mode in zip(self.filters, raw["modes"]):
+            filter |= {"M": matrix(mode["M"])} if "M" in mode else {}
         initial = raw["initial"]
         self.probabilities = [exact(p) for p in initial["mode_probabilities"]]
         self.estimates = [estimate(mode) for mode in initial["modes"]]
@@ -98,7 +100,7 @@ class Problem:
         if self.raw["filter"]["kind"] == "converted" and measurement["kind"] == "range-bearing":
             return self.converted(measurement, z, noise)
         function, angles = self.measured(measurement, at)
-        return Seen(rows_of(function, rows), noise, z, [angles[row] for row in rows]), {}
+        return Seen(rows_of(function, rows), noise, z, [angles[row] for row in rows], rows), {}
 
     def measured(self, measurement, at):
         """h, and which of its entries are angles."""

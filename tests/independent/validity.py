@@ -10,7 +10,7 @@ NEEDED = {"format", "id", "state", "modes", "measurement", "R", "filter", "trans
 ALWAYS = {"about", "flags", "units", "conventions"}  # format 2 may leave them out
 ADDED = {"parameters", "let", "sensors"}  # format 2 may have them
 OF_A_MODE = {"name", "F", "Q"}
-ADDED_TO_A_MODE = {"f", "motion", "let", "parameters", "filter"}
+ADDED_TO_A_MODE = {"f", "motion", "let", "parameters", "filter", "M"}
 OF_A_STEP = {"step", "z"}
 ADDED_TO_A_STEP = {"sensor", "T", "F", "Q", "H", "R", "transition", "truth"}
 
@@ -68,6 +68,7 @@ def check(raw):
     check_sensor(raw, raw["measurement"], raw["R"])
     for sensor in raw.get("sensors", []):
         check_sensor(raw, sensor["measurement"], sensor["R"])
+    check_shared_noise(raw, size)
     check_given(raw, size, modes)
     for k, at in enumerate(raw["measurements"]):
         check_step(raw, k, at, size, modes)
@@ -129,6 +130,21 @@ def check_sensor(raw, measurement, noise):
     check_covariance(noise, entries, "R")
     if filter == "converted" and kind == "range-bearing":
         demand(sorted(measurement["components"]) == ["bearing", "range"] and noise[0][1] == 0, "unknown", "what is converted")
+
+
+def check_shared_noise(raw, size):
+    """M goes with the noises, and with filters that have H. (That steps change Q or R is seen by the program alone.)"""
+    for j, mode in enumerate(raw["modes"]):
+        if "M" not in mode:
+            continue
+        place, filter = f"modes[{j}].M", mode.get("filter", raw["filter"])
+        demand(filter["kind"] in ("kalman", "extended"), "unknown", place)
+        demand(not raw.get("sensors"), "unknown", place)
+        check_matrix(mode["M"], size, len(raw["R"]), place)
+        if isinstance(mode["Q"], list) and not any(isinstance(entry, str) for row in mode["Q"] for entry in row):
+            above = [q + m for q, m in zip(mode["Q"], mode["M"])]
+            below = [[row[k] for row in mode["M"]] + r for k, r in enumerate(raw["R"])]
+            demand(is_semidefinite(above + below), "not-positive-definite", place)
 
 
 def check_given(raw, size, modes):

@@ -14,6 +14,7 @@
 //! - `partial`: measurements of which an entry is missing, and what is exact in a direction;
 //! - `behaviours`: for each kind of filter what it has in none of the others;
 //! - `consistency`: the squares by which a filter is called consistent;
+//! - `correlated`: process and measurement noise that have something in common;
 //! - `rejected`: problems that must be refused;
 //! - `write`: how a new case is certified, written and locked.
 
@@ -22,6 +23,7 @@ mod behaviours;
 mod chain;
 mod consistency;
 mod converted;
+mod correlated;
 mod draft;
 mod equations;
 mod extended;
@@ -55,6 +57,7 @@ pub fn all() -> Vec<ProblemFile> {
         partial::all(),
         behaviours::all(),
         consistency::all(),
+        correlated::all(),
     ]
     .concat()
 }

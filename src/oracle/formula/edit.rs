@@ -72,11 +72,12 @@ const OF: [Of; 9] = [
     Of::EachRightBefore,
 ];
 
-const GIVEN: [Given; 14] = [
+const GIVEN: [Given; 15] = [
     Given::MotionMatrix,
     Given::MotionNoise,
     Given::MeasurementMatrix,
     Given::MeasurementNoise,
+    Given::NoiseCrossCovariance,
     Given::Measurement,
     Given::Chain,
     Given::Column,

@@ -200,6 +200,7 @@ impl<'a> Instance<'a> {
             Given::MotionNoise => Some(problem.modes[mode].noise.clone()),
             Given::MeasurementMatrix => self.measures_by_matrix().then(|| problem.h().into_owned()),
             Given::MeasurementNoise => Some(problem.measurement_noise.clone()),
+            Given::NoiseCrossCovariance => problem.filter(mode).noise_cross_covariance.clone(),
             Given::Measurement => column(self.record()?.measurement.as_ref()?.as_slice()),
             Given::Truth => column(self.record()?.truth.as_ref()?.as_slice()),
             Given::Chain => Some(DMatrix::from_fn(r, r, |i, k| problem.chain[i][k])),

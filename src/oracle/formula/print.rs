@@ -164,6 +164,7 @@ impl Given {
             Self::MotionNoise => "Q",
             Self::MeasurementMatrix => "H",
             Self::MeasurementNoise => "R",
+            Self::NoiseCrossCovariance => "M",
             Self::Measurement => "z",
             Self::Truth => "truth",
             Self::Chain => "transition",

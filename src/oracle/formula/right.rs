@@ -47,6 +47,11 @@ fn defined(definition: Definition) -> Tree {
     leaf(Value::Defined(definition), Of::Itself)
 }
 
+/// M = E[w vᵀ].
+fn of_noises() -> Tree {
+    given(Given::NoiseCrossCovariance)
+}
+
 /// A formula that others are made of; none for a filter that has no such thing.
 pub(super) fn definition(name: Definition, drawing: Drawing) -> Option<Tree> {
     use Given::{Alpha, Beta, Components, FirstPoint, Kappa, One, OtherPoints};
@@ -246,7 +251,20 @@ fn of_measurement(at: &Instance) -> Vec<Tree> {
     match at.place.1 {
         PredictedMeasurement if at.measures_by_matrix() => vec![given(Given::MeasurementMatrix) * own(PredictedMean)],
         PredictedMeasurement => vec![own(PredictedMean).unary(Operation::Measure)],
-        CrossCovariance => vec![own(PredictedCovariance) * matrix.transpose()],
+        CrossCovariance => {
+            let by_state = own(PredictedCovariance) * matrix.transpose();
+            vec![if at.has_correlated_noises() {
+                by_state + of_noises()
+            } else {
+                by_state
+            }]
+        }
+        _ if at.has_correlated_noises() => {
+            let by_state = moved(&matrix, own(PredictedCovariance), noise.clone());
+            let shared = matrix.clone() * of_noises();
+            let by_cross = (matrix * own(CrossCovariance) + shared.clone().transpose()) + noise;
+            vec![(by_state + shared.clone()) + shared.transpose(), by_cross]
+        }
         _ => {
             let by_cross = matrix.clone() * own(CrossCovariance) + noise.clone();
             vec![moved(&matrix, own(PredictedCovariance), noise), by_cross]
@@ -356,7 +374,8 @@ fn updated_covariances(at: &Instance) -> Vec<Tree> {
         p() - (k() * own(Quantity::InnovationCovariance)) * k().transpose(),
         p() - k() * c().transpose(),
     ];
-    if let Some((h, r)) = at.slope().zip(at.noise()) {
+    let of_independent = at.slope().zip(at.noise()).filter(|_| !at.has_correlated_noises());
+    if let Some((h, r)) = of_independent {
         let rest = given(Given::Identity) - k() * h;
         forms.push(rest.clone() * p());
         forms.push((rest.clone() * p()) * rest.transpose() + (k() * r) * k().transpose());
@@ -393,10 +412,19 @@ impl Instance<'_> {
         }
     }
 
-    /// H C + R.
+    /// H C + R, and Mᵀ Hᵀ where the noises are correlated.
     fn inlined_innovation_covariance(&self) -> Option<Tree> {
         let (h, r) = self.slope().zip(self.noise())?;
-        Some(h * own(Quantity::CrossCovariance) + r)
+        let of_state = h.clone() * own(Quantity::CrossCovariance);
+        Some(if self.has_correlated_noises() {
+            (of_state + (h * of_noises()).transpose()) + r
+        } else {
+            of_state + r
+        })
+    }
+
+    fn has_correlated_noises(&self) -> bool {
+        self.problem().filter(self.place.2).noise_cross_covariance.is_some()
     }
 
     /// R, where the filter has one.

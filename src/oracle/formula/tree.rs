@@ -42,6 +42,7 @@ pub(super) enum Given {
     MotionNoise,
     MeasurementMatrix,
     MeasurementNoise,
+    NoiseCrossCovariance,
     Measurement,
     Truth,
     Chain,

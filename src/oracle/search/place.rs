@@ -75,6 +75,7 @@ fn of_mode<'a>(mode: &'a mut ModeFile, places: &mut Vec<Place<'a>>) {
         Some(_) => {}
         None => places.push(Place::Covariance(&mut mode.noise)),
     }
+    places.extend(models.noise_cross_covariance.as_mut().map(Place::Map));
 }
 
 fn measurement<'a>(of: &'a mut MeasurementFile, places: &mut Vec<Place<'a>>) {

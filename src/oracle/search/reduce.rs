@@ -125,6 +125,9 @@ fn remove_component(problem: &mut ProblemFile, index: usize) {
                 remove_both(rows, index);
             }
         }
+        if let Some(rows) = &mut mode.models.noise_cross_covariance {
+            rows.remove(index);
+        }
         if let Some(formulas) = &mut mode.models.formulas {
             formulas.remove(index);
         }
@@ -204,6 +207,10 @@ fn remove_measured(problem: &mut ProblemFile, sensor: usize, row: usize) {
         }
         // A named model measures what it measures, and the problem is refused.
         MeasurementFile::Model { .. } => {}
+    }
+    for mode in problem.modes.iter_mut().filter(|_| sensor == 0) {
+        let of_noises = mode.models.noise_cross_covariance.iter_mut();
+        of_noises.for_each(|rows| remove_column(rows, row));
     }
     if let FilterFile::FixedGain { modes, .. } = &mut problem.filter {
         for mode in modes {
@@ -328,6 +335,11 @@ fn of_mode(problem: &ProblemFile, j: usize) -> Vec<ProblemFile> {
     let n = problem.state.len();
     let models = &problem.modes[j].models;
     let mut plainer = Vec::new();
+    if models.noise_cross_covariance.is_some() {
+        plainer.push(with(problem, |problem| {
+            problem.modes[j].models.noise_cross_covariance = None;
+        }));
+    }
     if models.formulas.is_some() || models.motion.is_some() {
         plainer.push(with(problem, |problem| {
             let mode = &mut problem.modes[j];

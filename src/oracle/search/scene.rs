@@ -7,7 +7,9 @@
 use super::draw::{Draw, rounded};
 use crate::model::Conversion;
 use crate::number::Real;
+use crate::oracle::filter_file::CORRELATED_NOISE;
 use crate::oracle::problem::{Conventions, FORMAT, FORMAT_2, ProblemFile, Rows};
+use serde::Deserialize;
 use serde_json::{Value, json};
 
 /// What a program may be asked for.
@@ -20,11 +22,16 @@ pub struct Offer {
 }
 
 impl Offer {
-    /// The kinds of which there are problems: extended filters need format 2.
+    /// The kinds of which there are problems: extended filters and correlated noises need format 2.
     pub(super) fn possible(&self) -> Vec<&str> {
         let kinds = self.kinds.iter().map(String::as_str);
-        kinds.filter(|kind| self.is_format_2 || *kind != "extended").collect()
+        kinds.filter(|kind| self.is_format_2 || !is_new(kind)).collect()
     }
+}
+
+/// Whether a kind needs format 2.
+fn is_new(kind: &str) -> bool {
+    ["extended", CORRELATED_NOISE].contains(&kind)
 }
 
 /// Where a target moves and what is seen of it.
@@ -46,7 +53,7 @@ impl Scene {
     /// The scenes of a kind; the last three need format 2, and as many points as a state of five numbers has not too many of.
     fn of(kind: &str, offer: &Offer) -> &'static [Self] {
         match kind {
-            "kalman" | "fixed-gain" | "fixed-gain-unmixed" => &[Self::Linear],
+            "kalman" | "fixed-gain" | "fixed-gain-unmixed" | CORRELATED_NOISE => &[Self::Linear],
             "converted" => &[Self::Polar],
             _ if offer.is_format_2 && most_components(kind) > 4 => {
                 &[Self::Linear, Self::Polar, Self::Formulas, Self::Turn, Self::Heading]
@@ -102,11 +109,15 @@ pub(super) fn scene(draw: &mut Draw, offer: &Offer) -> Option<ProblemFile> {
             estimate.remove("covariance");
         }
     }
+    if kind == CORRELATED_NOISE {
+        share_noise(draw, &mut parts);
+    }
     let is_function = matches!(scene, Scene::Formulas | Scene::Turn | Scene::Heading);
-    let mut is_new = is_function || kind == "extended";
+    let mut is_new = is_function || is_new(kind);
     let others: Vec<&str> = kinds
         .into_iter()
-        .filter(|other| *other != "converted" && !other.starts_with("fixed-gain") && most_components(other) >= n)
+        .filter(|other| !["converted", CORRELATED_NOISE].contains(other))
+        .filter(|other| !other.starts_with("fixed-gain") && most_components(other) >= n)
         .filter(|other| Scene::of(other, offer).contains(&scene))
         .collect();
     if offer.is_format_2 && others.contains(&kind) && draw.happens(0.15) {
@@ -154,6 +165,7 @@ fn assembled(draw: &mut Draw, parts: &Parts, filter: &Value, is_new: bool) -> Op
 /// A filter of a kind without gains.
 fn filter(draw: &mut Draw, kind: &str, n: usize) -> Value {
     match kind {
+        CORRELATED_NOISE => json!({ "kind": "kalman" }),
         "kalman" | "extended" => json!({ "kind": kind }),
         "unscented" => {
             // n + λ = α² (n + κ) is positive in all of them, and negative is a weight in the last.
@@ -171,6 +183,24 @@ fn filter(draw: &mut Draw, kind: &str, n: usize) -> Value {
             json!({ "kind": kind, "conversion": conversion.name() })
         }
         rule => json!({ "kind": "cubature", "rule": rule }),
+    }
+}
+
+/// Correlations between the noises of motion and measurement. Where they are too many to be, the problem is refused.
+fn share_noise(draw: &mut Draw, parts: &mut Parts) {
+    let deviation = |rows: &Rows, i: usize| Real::sqrt(&rows[i][i]);
+    for mode in &mut parts.modes {
+        let Ok(noise) = Rows::deserialize(&mode["Q"]) else {
+            continue;
+        };
+        let mut shared = |i: usize, k: usize| {
+            rounded(
+                draw.between(-0.35, 0.35) * deviation(&noise, i) * deviation(&parts.noise, k),
+                2,
+            )
+        };
+        let row = |i: usize| (0..parts.noise.len()).map(|k| shared(i, k)).collect();
+        mode["M"] = json!((0..noise.len()).map(row).collect::<Rows>());
     }
 }
 

@@ -4,8 +4,8 @@
 
 use super::super::setup::Setup;
 use super::{
-    draws_no_points, draws_points, is_linear, measurement_matrix, motion_matrix, noise, sum_of_covariance_weights,
-    weights,
+    draws_no_points, draws_points, has_correlated_noises, is_linear, measurement_matrix, motion_matrix, noise,
+    sum_of_covariance_weights, weights,
 };
 use crate::filter::{cubature, kalman};
 use crate::gaussian::{Gaussian, mixture_covariance, mixture_mean};
@@ -50,10 +50,11 @@ fn of_mean<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
 fn of_update<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let (points, no_points, has_information) =
         (!draws_no_points(setup), draws_no_points(setup), has_information(setup));
+    let is_correlated = has_correlated_noises(setup);
     let entry = &mut setup.equations.updated_covariance;
     match id {
-        // (I − W H) P⁻ (I − W H)ᵀ + W R Wᵀ; with points P⁻ − W Cᵀ − C Wᵀ + W S Wᵀ
-        "joseph-update" if points => {
+        // (I − W H) P⁻ (I − W H)ᵀ + W R Wᵀ; with points or correlated noises P⁻ − W Cᵀ − C Wᵀ + W S Wᵀ
+        "joseph-update" if points || is_correlated => {
             *entry = |_, _, now, j| {
                 let (w, c, s) = (&now.gains[j], &now.cross_covariances[j], &now.innovation_covariances[j]);
                 &now.predicted[j].covariance - w * c.transpose() - c * w.transpose() + w * s * w.transpose()
@@ -71,10 +72,16 @@ fn of_update<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
         "update-by-cross-covariance" => {
             *entry = |_, _, now, j| &now.predicted[j].covariance - &now.gains[j] * now.cross_covariances[j].transpose();
         }
-        // (I − W H) P⁻
+        // (I − W H) P⁻, and − W Mᵀ where the noises are correlated
         "update-by-identity-minus-gain" => {
             if no_points {
-                *entry = |problem, _, now, j| rest(problem, now, j) * &now.predicted[j].covariance;
+                *entry = |problem, _, now, j| {
+                    let updated = rest(problem, now, j) * &now.predicted[j].covariance;
+                    match &problem.filter(j).noise_cross_covariance {
+                        Some(of_noises) => updated - &now.gains[j] * of_noises.transpose(),
+                        None => updated,
+                    }
+                }
             }
         }
         // (P⁻⁻¹ + Hᵀ R⁻¹ H)⁻¹
@@ -100,11 +107,12 @@ fn of_update<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     true
 }
 
-/// Whether there is an information form: no points, no entry of the state that a mode knows exactly, and nothing that is measured exactly,
-/// whose covariances have no inverse.
+/// Whether there is an information form: independent noises, no points, no entry of the state that a mode knows exactly, and nothing
+/// that is measured exactly, whose covariances have no inverse.
 fn has_information<T: Real>(setup: &Setup<T>) -> bool {
     let modes = &setup.problem.modes;
     draws_no_points(setup)
+        && !has_correlated_noises(setup)
         && setup.problems().all(|problem| has_inverse(&problem.measurement_noise))
         && !modes
             .iter()

@@ -4,8 +4,8 @@
 
 use super::super::setup::Setup;
 use super::{
-    difference, draws_no_points, draws_points, measurement_matrix, noise, seen, sum_of_covariance_weights, used,
-    weights,
+    difference, draws_no_points, draws_points, has_correlated_noises, measurement_matrix, noise, seen,
+    sum_of_covariance_weights, used, weights,
 };
 use crate::filter::{cubature, kalman};
 use crate::imm::{Equations, Problem, Step};
@@ -14,7 +14,10 @@ use nalgebra::{DMatrix, Dyn};
 
 /// Applies a variant of the measurement; whether it is one.
 pub(super) fn apply<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
-    of_predicted_measurement(id, setup) || of_innovation_covariance(id, setup) || of_cross_covariance(id, setup)
+    of_predicted_measurement(id, setup)
+        || of_innovation_covariance(id, setup)
+        || of_cross_covariance(id, setup)
+        || of_correlated_noises(id, setup)
 }
 
 /// The predicted measurement and the innovation.
@@ -115,6 +118,31 @@ fn of_cross_covariance<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
             }
         }
         _ => return false,
+    }
+    true
+}
+
+/// What process and measurement noise have in common.
+fn of_correlated_noises<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
+    let is_correlated = has_correlated_noises(setup);
+    let equations = &mut setup.equations;
+    // S = H P⁻ Hᵀ + R, C = P⁻ Hᵀ
+    let (in_innovation, in_gain) = match id {
+        "noise-correlation-omitted-in-the-innovation" => (true, false),
+        "noise-correlation-omitted-in-the-gain" => (false, true),
+        "noise-correlation-omitted" => (true, true),
+        _ => return false,
+    };
+    if is_correlated && in_innovation {
+        equations.innovation_covariance = |problem, _, now, j| {
+            let h = measurement_matrix(problem, now, j);
+            kalman::innovation_covariance(&h, &now.predicted[j].covariance, noise(problem, now, j))
+        };
+    }
+    if is_correlated && in_gain {
+        equations.cross_covariance = |problem, _, now, j| {
+            kalman::cross_covariance(&now.predicted[j].covariance, &measurement_matrix(problem, now, j))
+        };
     }
     true
 }

@@ -100,6 +100,9 @@ pub enum Applies {
     Kalman,
     /// In filters that linearise the motion or the measurement.
     Linearised,
+    /// Where process and measurement noise are correlated.
+    #[serde(rename = "correlated noises")]
+    CorrelatedNoises,
     /// In problems whose steps differ.
     #[serde(rename = "changing steps")]
     ChangingSteps,
@@ -137,6 +140,7 @@ impl Applies {
             Self::Conversions => "conversions",
             Self::Kalman => "kalman",
             Self::Linearised => "linearised",
+            Self::CorrelatedNoises => "correlated noises",
             Self::ChangingSteps => "changing steps",
             Self::Covariances => "covariances",
             Self::FixedGains => "fixed gains",
@@ -164,6 +168,7 @@ impl Applies {
                 };
                 problem.filters.iter().any(linearises)
             }
+            Self::CorrelatedNoises => has_correlated_noises(setup),
             Self::ChangingSteps => !setup.changes.is_empty(),
             Self::Covariances => problem.has_covariances(),
             Self::FixedGains => !problem.has_covariances(),
@@ -371,6 +376,12 @@ fn draws_no_points<T: Real>(setup: &Setup<T>) -> bool {
         .filters
         .iter()
         .all(|filter| filter.rules() == [None, None])
+}
+
+/// Whether the noises of motion and measurement are correlated in a mode.
+fn has_correlated_noises<T: Real>(setup: &Setup<T>) -> bool {
+    let mut filters = setup.problem.filters.iter();
+    filters.any(|filter| filter.noise_cross_covariance.is_some())
 }
 
 /// The points of an estimate with another square root of its covariance; none where the filter of mode j draws none.

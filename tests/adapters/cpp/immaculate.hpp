@@ -149,6 +149,13 @@ inline std::string kind_of(const Part &problem) {
     return is_unmixed ? "fixed-gain-unmixed" : filter["kind"].text();
 }
 
+// Whether the noises of motion and measurement are correlated in a mode.
+inline bool has_correlated_noise(const Part &problem) {
+    for (const Part &mode : problem["modes"].parts())
+        if (mode.has("M")) return true;
+    return false;
+}
+
 // ----------------------------------------------------------------------------------------------------------- showing a step
 
 // What can be shown, in the order in which it is computed: the name, and whether each mode has one.
@@ -336,8 +343,11 @@ inline std::vector<Case> cases(const std::string &folder, const Program &program
             const std::string path = file.path().string();
             if (path.size() <= end.size() || path.substr(path.size() - end.size()) != end) continue;
             Case one{read(path), read(path.substr(0, path.size() - end.size()) + ".trace.json")};
-            const bool is_asked = has(program.formats, one.problem.at("format")) && has(program.kinds, kind_of(Part(one.problem)));
-            if (is_asked && one.trace.contains("steps")) result.push_back(std::move(one));
+            if (!one.trace.contains("steps")) continue;
+            const Part problem(one.problem);
+            const bool is_taken = has(program.kinds, "correlated-noise") || !has_correlated_noise(problem);
+            const bool is_asked = has(program.formats, one.problem.at("format")) && has(program.kinds, kind_of(problem)) && is_taken;
+            if (is_asked) result.push_back(std::move(one));
         }
     }
     if (result.empty())

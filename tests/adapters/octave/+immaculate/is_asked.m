@@ -1,10 +1,17 @@
 % immaculate.is_asked(filter, problem): whether a filter is asked for a problem: by its format, and by the name of the problem's filter.
+%
+% Noises of motion and measurement that are correlated (M of a mode) are for filters that say so.
 function result = is_asked(filter, problem)
   kind = problem.filter.kind;
   if strcmp(kind, 'cubature')
     kind = problem.filter.rule;
   elseif strcmp(kind, 'fixed-gain') && strcmp(problem.filter.mixing, 'unmixed')
     kind = 'fixed-gain-unmixed';
+  end
+  is_correlated = isfield(problem, 'modes') && iscell(problem.modes) && any(cellfun(@(mode) isfield(mode, 'M'), problem.modes));
+  if is_correlated && ~any(strcmp('correlated-noise', filter.kinds))
+    result = false;
+    return
   end
   result = any(strcmp(problem.format, filter.formats)) && any(strcmp(kind, filter.kinds));
 end
