@@ -323,7 +323,7 @@ fn flags_of_filters_and_angles_are_true() {
         let has_points = (0..problem.modes.len()).any(|mode| draws(problem.filter_of(mode)));
         let is_matrix = |mode: &ModeFile| mode.models.formulas.is_none() && mode.models.motion.is_none();
         let moves_linearly = problem.modes.iter().all(is_matrix);
-        let is_extended = matches!(problem.filter, FilterFile::Extended {});
+        let is_extended = matches!(problem.filter, FilterFile::Extended { .. });
         let is_fixed = matches!(problem.filter, FilterFile::FixedGain { .. });
         assert_eq!(has(&problem, "fixed-gain"), is_fixed, "{id}");
         let is_converted = matches!(problem.filter, FilterFile::Converted { .. });

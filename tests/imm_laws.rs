@@ -1369,6 +1369,7 @@ impl<T: number::Real> AtRunTime<T> {
             predict: self.transform(&filter.predict),
             update: match &filter.update {
                 Update::By(update) => Update::By(self.transform(update)),
+                Update::Iterated(times) => Update::Iterated(*times),
                 Update::Converted(conversion) => Update::Converted(*conversion),
                 Update::Given(given) => Update::Given(FixedGain {
                     gain: self.matrix(&given.gain),

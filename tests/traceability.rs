@@ -245,6 +245,7 @@ const WITHOUT_SOURCE: [(&str, &[&str]); 6] = [
             "kalman",
             "points",
             "has_covariances",
+            "linearises_the_measurement",
             "conversion",
             "rules",
             "rules_mut",

@@ -6,6 +6,7 @@
 //! ```text
 //! Filter { predict: Transform,              x̂⁰, P⁰ ─▶ x̂⁻, P⁻
 //!          update:  By(Transform)           x̂⁻, P⁻ ─▶ ẑ, S, C ─▶ gain
+//!                 | Iterated(times)         the same at the slopes where the estimate turns out to be
 //!                 | Converted(Conversion)   z ─▶ z^c, R^c, then as a Kalman filter
 //!                 | Given(FixedGain) }      gain and S are numbers of the problem; there is no covariance of the state
 //! ```
@@ -16,6 +17,7 @@ use crate::model::Conversion;
 use crate::number::Field;
 use crate::rule::Rule;
 use nalgebra::{Dim, OMatrix};
+use std::num::NonZeroUsize;
 
 /// How the moments of a Gaussian go through a function.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,6 +41,8 @@ where
 {
     /// The moments of the predicted measurement by a transform, and the gain from them: [`update`](super::update).
     By(Transform<T, N>),
+    /// As by slopes, so many times, each at the estimate of the time before: [`iterated`](super::iterated).
+    Iterated(NonZeroUsize),
     /// Range and bearing become a position first: [`converted`](super::converted).
     Converted(Conversion),
     /// Gain and innovation covariance are given: [`fixed_gain`](super::fixed_gain).
@@ -123,6 +127,48 @@ where
         Self {
             predict: Transform::Linearised,
             update: Update::By(Transform::Linearised),
+            noise_cross_covariance: None,
+        }
+    }
+
+    /// The iterated extended Kalman filter, whose update is linearised so many times.
+    ///
+    /// Source: Bar-Shalom, Li and Kirubarajan 2001, section 10.5.2.
+    ///
+    /// Example: a target expected 3 m east and 4 m north is known well to the east, and much farther away than it was thought.
+    ///
+    /// ```
+    /// use immaculate::filter::Filter;
+    /// use immaculate::{gaussian::Gaussian, imm::{Imm, Initial, Interaction, Problem}};
+    /// use immaculate::model::{PolarComponent, Sensor, motion::{Mode, Motion}};
+    /// use nalgebra::{Matrix2, matrix, vector};
+    /// use std::num::NonZeroUsize;
+    ///
+    /// let problem = |filter| Problem {
+    ///     modes: vec![Mode { name: "still".into(), motion: Motion::Linear(Matrix2::identity()), noise: Matrix2::zeros() }],
+    ///     filters: vec![filter],
+    ///     interaction: Interaction::Imm,
+    ///     angles: vec![],
+    ///     chain: vec![vec![1.0]],
+    ///     sensor: Sensor::Polar { components: vec![PolarComponent::Range], position: [0, 1], location: [0.0, 0.0] },
+    ///     measurement_noise: matrix![0.01],
+    /// };
+    /// let expected = Gaussian { mean: vector![3.0, 4.0], covariance: matrix![0.01, 0.0; 0.0, 25.0] };
+    /// let initial = Initial { modes: vec![expected], mode_probabilities: vec![1.0] };
+    /// let range = |filter| -> Result<f64, Box<dyn std::error::Error>> {
+    ///     Ok(Imm::new(problem(filter), &initial)?.step(Some(&vector![10.0]))?.combined.mean.norm())
+    /// };
+    /// // At the slope of where it was expected the correction is too long.
+    /// assert!((range(Filter::extended())? - 10.0).abs() > 0.5);
+    /// assert!((range(Filter::iterated(NonZeroUsize::new(5).unwrap()))? - 10.0).abs() < 0.01);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// Evidence: `one_iteration_is_the_extended_filter_to_the_last_bit` (iterated).
+    pub fn iterated(iterations: NonZeroUsize) -> Self {
+        Self {
+            predict: Transform::Linearised,
+            update: Update::Iterated(iterations),
             noise_cross_covariance: None,
         }
     }
@@ -275,6 +321,11 @@ where
     /// Whether it has covariances of the state; a filter whose gain is given has none.
     pub fn has_covariances(&self) -> bool {
         !matches!(self.update, Update::Given(_))
+    }
+
+    /// Whether it uses the slopes of the measurement, as extended filters do.
+    pub fn linearises_the_measurement(&self) -> bool {
+        matches!(self.update, Update::By(Transform::Linearised) | Update::Iterated(_))
     }
 
     /// How it converts a measurement, if it does.

@@ -15,6 +15,7 @@
 //! - [`kalman`]: the linear equations;
 //! - [`correlated`]: the same where the noises of motion and measurement are correlated;
 //! - [`extended`]: the same at the slopes of motion and measurement;
+//! - [`iterated`]: the measurement at the slopes where the estimate turns out to be;
 //! - [`cubature`]: the same moments by points and weights, in the centred form of liu2017;
 //! - [`raw`]: the moments about the origin that zhu2016 prints, equal in exact arithmetic and poorer in floating point;
 //! - [`update`]: gain, updated mean, updated covariance, for both;
@@ -60,6 +61,7 @@ pub mod correlated;
 pub mod cubature;
 pub mod extended;
 pub mod fixed_gain;
+pub mod iterated;
 pub mod kalman;
 pub mod kind;
 pub mod raw;

@@ -220,7 +220,7 @@ where
                         field: "measurement".into(),
                     });
                 }
-                Update::By(_) => {}
+                Update::By(_) | Update::Iterated(_) => {}
                 Update::Converted(_) => self.check_conversion()?,
                 Update::Given(_) if filter.predict != Transform::Exact => {
                     return Err(InvalidProblem::NothingToDrawFrom);

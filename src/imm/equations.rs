@@ -18,7 +18,7 @@ use super::angles::{estimates_near, points_near, wrapped};
 use super::probability;
 use super::problem::Interaction;
 use super::{Problem, Step};
-use crate::filter::{Transform, Update, converted, correlated, cubature, extended, kalman, update};
+use crate::filter::{Transform, Update, converted, correlated, cubature, extended, iterated, kalman, update};
 use crate::gaussian::{log_density, mixture_covariance, mixture_mean};
 use crate::matrix::{Holds, NotPositiveDefinite, Shapes, check_positive_definite, ldl, quadratic_form};
 use crate::model::motion::Motion;
@@ -37,6 +37,9 @@ pub type Factored<V> = Result<V, NotPositiveDefinite>;
 
 /// Points of the state, or their measurements.
 pub type Points<T, N> = Vec<OVector<T, N>>;
+
+/// Where a measurement is linearised, if not at the predicted mean.
+pub type Iterate<T, N> = Option<OVector<T, N>>;
 
 /// The equations of a cycle, in the order in which they are evaluated.
 #[derive(Debug, Clone, Copy)]
@@ -70,6 +73,8 @@ where
     pub converted_measurement: OfMeasurement<T, N, M, Option<OVector<T, M>>>,
     /// R^c, [`converted::converted_covariance`]; none where no filter converts.
     pub converted_covariance: OfMeasurement<T, N, M, Option<OMatrix<T, M, M>>>,
+    /// x_{N−1}, [`iterated::linearisation_point`]; none for a filter that does not iterate.
+    pub linearisation_point: OfMeasurement<T, N, M, Factored<Iterate<T, N>>>,
     /// The points of the prediction, [`cubature::points`]; none for a filter that draws none.
     pub predicted_points: Equation<T, N, M, Factored<Points<T, N>>>,
     /// The measurements of these points, [`Sensor::of`](crate::model::Sensor::of).
@@ -210,6 +215,13 @@ where
             converted_covariance: |problem, z, _, _| {
                 converted::converted_covariance(problem.conversion()?, &problem.sensor, z, &problem.measurement_noise)
             },
+            linearisation_point: |problem, z, now, j| match &problem.filter(j).update {
+                Update::Iterated(times) => {
+                    let (predicted, noise) = (&now.predicted[j], noise(problem, now, j));
+                    iterated::linearisation_point(*times, &problem.sensor, predicted, z, noise)
+                }
+                _ => Ok(None),
+            },
             predicted_points: |problem, _, now, j| match &problem.filter(j).update {
                 Update::By(Transform::Points(rule)) => cubature::points(rule, &now.predicted[j]),
                 _ => Ok(Vec::new()),
@@ -225,16 +237,18 @@ where
                     let centre = problem.sensor.of(&now.predicted[j].mean);
                     problem.sensor.mean(&rule.weights, &now.measured_points[j], &centre)
                 }
-                _ => seen(problem, &now.predicted[j].mean, j),
+                _ => match &now.linearisation_points[j] {
+                    Some(at) => iterated::measurement_of_the_tangent(&problem.sensor, at, &now.predicted[j].mean),
+                    None => seen(problem, &now.predicted[j].mean, j),
+                },
             },
             innovation: |problem, z, now, j| {
                 difference(problem, used(problem, z, now, j), &now.predicted_measurements[j], j)
             },
-            measurement_jacobian: |problem, _, now, j| match &problem.filter(j).update {
-                Update::By(Transform::Linearised) => {
-                    Some(extended::measurement_jacobian(&problem.sensor, &now.predicted[j].mean))
-                }
-                _ => None,
+            measurement_jacobian: |problem, _, now, j| {
+                let at = now.linearisation_points[j].as_ref().unwrap_or(&now.predicted[j].mean);
+                let linearises = problem.filter(j).linearises_the_measurement();
+                linearises.then(|| extended::measurement_jacobian(&problem.sensor, at))
             },
             innovation_covariance: |problem, _, now, j| match &problem.filter(j).update {
                 Update::By(Transform::Points(rule)) => cubature::innovation_covariance(
@@ -245,7 +259,7 @@ where
                     &problem.measurement_noise,
                 ),
                 Update::Given(given) => given.innovation_covariance.clone(),
-                Update::By(Transform::Exact | Transform::Linearised) | Update::Converted(_) => {
+                Update::By(Transform::Exact | Transform::Linearised) | Update::Iterated(_) | Update::Converted(_) => {
                     let (h, noise) = (measurement_matrix(problem, now, j), noise(problem, now, j));
                     let covariance = &now.predicted[j].covariance;
                     match &problem.filter(j).noise_cross_covariance {

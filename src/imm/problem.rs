@@ -156,7 +156,8 @@ where
             Needs::Covariances => self.has_covariances(),
             Needs::Conversion => self.conversion().is_some(),
             Needs::LinearisedMotion => self.filter(j).predict == Transform::Linearised,
-            Needs::LinearisedMeasurement => self.filter(j).update == Update::By(Transform::Linearised),
+            Needs::LinearisedMeasurement => self.filter(j).linearises_the_measurement(),
+            Needs::Iterations => matches!(self.filter(j).update, Update::Iterated(times) if times.get() > 1),
             Needs::Detection | Needs::Consistency | Needs::Truth => true,
         }
     }

@@ -47,7 +47,9 @@ where
     pub converted_measurement: Option<OVector<T, M>>,
     /// R^c, the covariance of the converted measurement.
     pub converted_covariance: Option<OMatrix<T, M, M>>,
-    /// H, the Jacobians of the measurement at the predicted means; of filters that linearise.
+    /// Where the measurement is linearised, if not at the predicted mean: of filters that do it more than once.
+    pub linearisation_points: Vec<Option<OVector<T, N>>>,
+    /// H, the Jacobians of the measurement there; of filters that linearise.
     pub measurement_jacobians: Vec<Option<OMatrix<T, M, N>>>,
     /// Points drawn afresh from the predicted estimates, `[j][s]`; none for a filter that draws none.
     pub predicted_points: Vec<Vec<OVector<T, N>>>,
@@ -104,6 +106,7 @@ where
             combined_prediction: estimates[0].clone(),
             converted_measurement: None,
             converted_covariance: None,
+            linearisation_points: Vec::new(),
             measurement_jacobians: Vec::new(),
             predicted_points: Vec::new(),
             measured_points: Vec::new(),
@@ -131,6 +134,7 @@ where
         self.propagated_points.clear();
         self.converted_measurement = None;
         self.converted_covariance = None;
+        self.linearisation_points.clear();
         self.measurement_jacobians.clear();
         self.predicted_points.clear();
         self.measured_points.clear();
@@ -341,8 +345,9 @@ impl Quantity {
 
     /// What it is computed from, besides the problem and the measurement, where `has` says what is there.
     pub fn inputs(self, has: impl Fn(Needs) -> bool) -> impl Iterator<Item = Input> {
-        let inputs = match self {
+        let inputs: &[Input] = match self {
             InnovationCovariance | Gain if !has(Needs::Covariances) => &[],
+            MeasurementJacobian if has(Needs::Iterations) => &[Now(PredictedMean), Now(PredictedCovariance)],
             _ => self.all_inputs(has(Needs::Detection)),
         };
         inputs.iter().copied().filter(move |input| {

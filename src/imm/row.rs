@@ -35,6 +35,8 @@ pub enum Needs {
     Covariances,
     /// A detection in this step.
     Detection,
+    /// A filter that linearises the measurement more than once. No value needs it, but some are computed from more.
+    Iterations,
     /// A run that computes how consistent it is: the standard equations do, [`Equations::without_consistency`] do not.
     Consistency,
     /// The true state in this step.

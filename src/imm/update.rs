@@ -1,7 +1,7 @@
 //! The update of one mode, in the order in which its equations are evaluated.
 //!
 //! ```text
-//! points ─▶ ẑ ─▶ ν ─▶ H ─▶ S ─▶ C ─▶ gain ─▶ updated mean, covariance ─▶ ln L, νᵀ S⁻¹ ν
+//! x_{N−1} ─▶ points ─▶ ẑ ─▶ ν ─▶ H ─▶ S ─▶ C ─▶ gain ─▶ updated mean, covariance ─▶ ln L, νᵀ S⁻¹ ν
 //! ```
 
 use super::failure::{Cause, Failure, failure, not_definite};
@@ -29,6 +29,9 @@ pub(crate) fn update<T: Real, N: Dim, M: Dim>(
 where
     Shapes: Holds<N, M>,
 {
+    let point = (e.linearisation_point)(problem, z, now, j)
+        .map_err(|pivot| not_definite(problem, now, j, Quantity::Gain, "innovation covariance", pivot))?;
+    now.linearisation_points.push(point);
     let points = (e.predicted_points)(problem, previous, now, j).map_err(|pivot| {
         not_definite(
             problem,

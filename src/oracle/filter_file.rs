@@ -1,9 +1,10 @@
 //! The filter of a problem file: its kind, with what the kind needs.
 
-use super::problem::Rows;
+use super::problem::{Rows, if_there_at_all};
 use crate::imm::{Needs, Quantity};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::num::NonZeroUsize;
 
 /// The rules of cubature filters. What a paper prints wrongly is no rule of a problem.
 pub const RULES: [&str; 7] = [
@@ -23,9 +24,10 @@ pub const MIXINGS: [&str; 2] = ["mixed", UNMIXED];
 pub const UNMIXED: &str = "unmixed";
 
 /// The kinds of filter whose name is not that of a rule.
-const OTHER_KINDS: [&str; 7] = [
+const OTHER_KINDS: [&str; 8] = [
     "kalman",
     "extended",
+    "extended-iterated",
     "unscented",
     "converted",
     "fixed-gain",
@@ -51,7 +53,16 @@ pub enum FilterFile {
     /// Linear motion and measurement.
     Kalman {},
     /// Motion and measurement at their slopes. Format 2.
-    Extended {},
+    Extended {
+        /// How often the measurement is linearised in an update; absent, once.
+        #[serde(
+            default,
+            skip_serializing_if = "Option::is_none",
+            deserialize_with = "if_there_at_all"
+        )]
+        #[schemars(with = "NonZeroUsize")]
+        iterations: Option<NonZeroUsize>,
+    },
     /// Moments by the points of a rule.
     Cubature {
         /// `cubature-3`, `cubature-5`, `simplex-5`, `gauss-hermite-2` to `gauss-hermite-5`.
@@ -91,12 +102,18 @@ pub struct FixedGainFile {
 }
 
 impl FilterFile {
-    /// The kind's short name: `kalman`, `extended`, `unscented`, the rule's, `converted`, `fixed-gain` or, where no estimates are mixed,
-    /// `fixed-gain-unmixed`.
+    /// Whether the measurement is linearised more than once in an update.
+    pub(super) fn iterates(&self) -> bool {
+        matches!(self, Self::Extended { iterations: Some(times) } if times.get() > 1)
+    }
+
+    /// The kind's short name: `kalman`, `extended`, `extended-iterated`, `unscented`, the rule's, `converted`, `fixed-gain` or, where no
+    /// estimates are mixed, `fixed-gain-unmixed`.
     pub fn name(&self) -> &str {
         match self {
             Self::Kalman {} => "kalman",
-            Self::Extended {} => "extended",
+            Self::Extended { .. } if self.iterates() => "extended-iterated",
+            Self::Extended { .. } => "extended",
             Self::Cubature { rule } => rule,
             Self::Unscented { .. } => "unscented",
             Self::Converted { .. } => "converted",
@@ -109,7 +126,7 @@ impl FilterFile {
     pub fn family(&self) -> &'static str {
         match self {
             Self::Kalman {} => "kalman",
-            Self::Extended {} => "extended",
+            Self::Extended { .. } => "extended",
             Self::Cubature { .. } => "cubature",
             Self::Unscented { .. } => "unscented",
             Self::Converted { .. } => "converted",
@@ -127,7 +144,14 @@ impl FilterFile {
             (Self::Converted { .. }, Quantity::InnovationCovariance) => "sustika2015 (16)",
             (Self::Converted { .. }, Quantity::CrossCovariance | Quantity::Gain) => "sustika2015 (17)",
             (
-                Self::Extended {},
+                Self::Extended { .. },
+                Quantity::PredictedMeasurement
+                | Quantity::MeasurementJacobian
+                | Quantity::InnovationCovariance
+                | Quantity::CrossCovariance,
+            ) if self.iterates() => "Bar-Shalom, Li and Kirubarajan 2001, section 10.5.2",
+            (
+                Self::Extended { .. },
                 Quantity::PredictedMean
                 | Quantity::PredictedCovariance
                 | Quantity::PredictedMeasurement
@@ -143,7 +167,8 @@ impl FilterFile {
         match needed {
             Needs::Covariances => !matches!(self, Self::FixedGain { .. }),
             Needs::Conversion => matches!(self, Self::Converted { .. }),
-            Needs::LinearisedMotion | Needs::LinearisedMeasurement => matches!(self, Self::Extended {}),
+            Needs::LinearisedMotion | Needs::LinearisedMeasurement => matches!(self, Self::Extended { .. }),
+            Needs::Iterations => self.iterates(),
             Needs::Detection | Needs::Consistency | Needs::Truth => true,
         }
     }

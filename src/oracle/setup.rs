@@ -317,7 +317,10 @@ impl ProblemFile {
                     };
                     Filter::converted(conversion.parse().map_err(unknown)?)
                 }
-                FilterFile::Extended {} => Filter::extended(),
+                FilterFile::Extended { iterations: None } => Filter::extended(),
+                FilterFile::Extended {
+                    iterations: Some(times),
+                } => Filter::iterated(*times),
                 _ => match rule_of(filter, &place)? {
                     Some(rule) => Filter::points(rule),
                     None => Filter::kalman(),
@@ -372,7 +375,7 @@ impl ProblemFile {
         let n = Dyn(self.state.len());
         let (field, rule) = match filter {
             FilterFile::Kalman {}
-            | FilterFile::Extended {}
+            | FilterFile::Extended { .. }
             | FilterFile::FixedGain { .. }
             | FilterFile::Converted { .. } => return Ok(None),
             FilterFile::Cubature { rule } => (

@@ -170,7 +170,7 @@ impl ProblemFile {
         if !self.sensors.is_empty() {
             return Some("problem.sensors".to_owned());
         }
-        if matches!(self.filter, FilterFile::Extended {}) {
+        if matches!(self.filter, FilterFile::Extended { .. }) {
             return Some("problem.filter.kind".to_owned());
         }
         let mut steps = self.measurements.iter().enumerate();

@@ -10,6 +10,7 @@ use super::problem::{FORMAT, FixedGainFile, ProblemFile, Rows};
 use super::schema::KEYS_OF_FORMAT_1;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
+use std::num::NonZeroUsize;
 
 /// Reads a value for nothing but its error: the place inside the value, and the sentence.
 type Attempt = fn(&Value) -> Result<(), (String, String)>;
@@ -45,7 +46,7 @@ const OBJECTS: [(&str, &[Kind]); 2] = [
         "filter",
         &[
             ("kalman", &[]),
-            ("extended", &[]),
+            ("extended", &[("iterations", attempt::<NonZeroUsize>)]),
             ("cubature", &[("rule", attempt::<String>)]),
             (
                 "unscented",
@@ -65,7 +66,7 @@ const OBJECTS: [(&str, &[Kind]); 2] = [
 ];
 
 /// The keys that may be absent.
-const OPTIONAL: [&str; 1] = ["parameters"];
+const OPTIONAL: [&str; 2] = ["parameters", "iterations"];
 
 fn attempt<T: DeserializeOwned>(value: &Value) -> Result<(), (String, String)> {
     serde_path_to_error::deserialize::<_, T>(value)

@@ -187,7 +187,10 @@ impl ProblemFile {
             };
             let place = format!("problem.modes[{j}].M");
             let filter = self.filter_of(j);
-            if !matches!(filter, FilterFile::Kalman {} | FilterFile::Extended {}) {
+            if !matches!(
+                filter,
+                FilterFile::Kalman {} | FilterFile::Extended { iterations: None }
+            ) {
                 let reason = format!(
                     "is given, and the filter is {}; only kalman and extended have the matrix of the measurement that it needs",
                     filter.name()
@@ -219,6 +222,14 @@ impl ProblemFile {
         match filter {
             FilterFile::Cubature { rule } if !RULES.contains(&rule.as_str()) => {
                 unknown("rule", format!("is {rule:?}; known are {}", RULES.join(", ")))
+            }
+            FilterFile::Extended {
+                iterations: Some(times),
+            } if times.get() > MOST_ITERATIONS => {
+                let reason = format!(
+                    "is {times}; at most {MOST_ITERATIONS} are computed, and those after the first few change nothing"
+                );
+                Err(Invalid::new(Class::Range, format!("{place}.iterations"), reason))
             }
             FilterFile::Kalman {} | FilterFile::FixedGain { .. } if is_polar => unknown(
                 "kind",
@@ -363,6 +374,9 @@ impl ProblemFile {
 
 /// A trace is held in memory as a whole: so many numbers take about a gigabyte while they are written.
 const MOST_NUMBERS: usize = 10_000_000;
+
+/// The most linearisations of an update.
+const MOST_ITERATIONS: usize = 100;
 
 /// The most components of a state. A problem of this size is certified in minutes; nothing else limits it.
 pub const MOST_STATES: usize = 32;

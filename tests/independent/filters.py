@@ -116,6 +116,8 @@ class Seen:
 def update(filter, predicted, seen):
     """liu2017 (19)-(21), with the exponent −½ of a density: what a mode computes from a measurement, and its new estimate."""
     found = moments(filter, seen.function, predicted, seen.angles)
+    for _ in range(1, filter.get("iterations", 1)):
+        found = tangent(seen.function, corrected(found, predicted, seen), predicted)
     if "M" in filter:
         found = with_correlated_noises(found, seen, filter["M"])
     innovation = wrap_rows(seen.z - found.mean, seen.angles)
@@ -142,6 +144,19 @@ def with_correlated_noises(found, seen, shared):
     slopes = seen.function.matrix if found.jacobian is None else found.jacobian
     both = slopes * shared
     return Moments(found.mean, found.covariance + both + both.transpose(), found.cross + shared, found.jacobian)
+
+
+def corrected(found, predicted, seen):
+    """The updated mean with these moments of the measurement: the next iterate of the iterated extended filter."""
+    innovation = wrap_rows(seen.z - found.mean, seen.angles)
+    return predicted.mean + found.cross * solve(found.covariance + seen.noise, innovation)
+
+
+def tangent(function, at, estimate):
+    """Bar-Shalom, Li and Kirubarajan 2001, section 10.5.2: the moments by the slopes at another state, h(x) + H(x̂⁻ − x)."""
+    jacobian = function.slopes(at)
+    cross = estimate.covariance * jacobian.transpose()
+    return Moments(function.at(at) + jacobian * (estimate.mean - at), jacobian * cross, cross, jacobian)
 
 
 def update_with_given_gain(given, predicted, seen):

@@ -26,6 +26,7 @@ RIGHT = {
     "mixture": imm.mixture,
     "rule": rules.rule_of,
     "density": filters.log_density,
+    "tangent": filters.tangent,
     "slopes": formulas.Curved.slopes,
     "update": filters.update,
     "given": filters.update_with_given_gain,
@@ -126,6 +127,10 @@ def independent_noises(found, _seen, _shared):
     return found
 
 
+def tangent_at_the_prediction(function, _at, estimate):
+    return RIGHT["tangent"](function, estimate.mean, estimate)
+
+
 def without_two_pi(deviation, covariance):
     return RIGHT["density"](deviation, covariance) + len(deviation.entries()) * (2 * arb.pi()).log() / 2
 
@@ -210,6 +215,7 @@ EQUATIONS = [
     ("one weight of the centre", "innovation_covariance", "filters.rule_of", mean_weights_for_both, "rule.unscented-scaled.n2"),
     ("the error in units of the file", "nees", "imm.squared_distance", squared_norm, "consistency.kalman"),
     ("noises taken for independent", "innovation_covariance", "filters.with_correlated_noises", independent_noises, "correlated.kalman"),
+    ("linearised at the prediction", "predicted_measurement", "filters.tangent", tangent_at_the_prediction, "extended.iterated.one-mode"),
     ("no 2π", "log_likelihood", "filters.log_density", without_two_pi, "likelihood.generic"),
     ("no determinant", "log_likelihood", "filters.log_density", without_determinant, "likelihood.generic"),
     ("the Jacobian transposed", "predicted.covariance", "formulas.Curved.slopes", slopes_transposed, "heading.extended"),

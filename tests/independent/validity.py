@@ -17,7 +17,7 @@ ADDED_TO_A_STEP = {"sensor", "T", "F", "Q", "H", "R", "transition", "truth"}
 RULES = {"cubature-3", "cubature-5", "simplex-5"} | {f"gauss-hermite-{order}" for order in (2, 3, 4, 5)}
 FILTERS = {
     "kalman": set(),
-    "extended": set(),
+    "extended": {"iterations"},
     "cubature": {"rule"},
     "unscented": {"alpha", "beta", "kappa"},
     "converted": {"conversion"},
@@ -96,7 +96,8 @@ def check_names(raw):
     """Filters, rules, measurements and conventions that exist."""
     for filter in [raw["filter"]] + [mode["filter"] for mode in raw["modes"] if "filter" in mode]:
         demand(filter["kind"] in FILTERS, "unknown", "filter.kind")
-        check_keys(filter, {"kind"} | FILTERS[filter["kind"]], set(), "filter")
+        optional = {"iterations"}
+        check_keys(filter, {"kind"} | FILTERS[filter["kind"]] - optional, FILTERS[filter["kind"]] & optional, "filter")
         for key, known in CHOICES.items():
             demand(filter.get(key) is None or filter[key] in known, "unknown", f"filter.{key}")
     for key, choice in raw.get("conventions", {}).items():
@@ -138,7 +139,7 @@ def check_shared_noise(raw, size):
         if "M" not in mode:
             continue
         place, filter = f"modes[{j}].M", mode.get("filter", raw["filter"])
-        demand(filter["kind"] in ("kalman", "extended"), "unknown", place)
+        demand(filter["kind"] in ("kalman", "extended") and "iterations" not in filter, "unknown", place)
         demand(not raw.get("sensors"), "unknown", place)
         check_matrix(mode["M"], size, len(raw["R"]), place)
         if isinstance(mode["Q"], list) and not any(isinstance(entry, str) for row in mode["Q"] for entry in row):

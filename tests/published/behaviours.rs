@@ -170,7 +170,7 @@ fn units() -> Vec<ProblemFile> {
 }
 
 fn runs() -> Vec<ProblemFile> {
-    vec![in_format_2(liu2017_run(FilterFile::Extended {})).named(
+    vec![in_format_2(liu2017_run(FilterFile::Extended { iterations: None })).named(
         "extended.run",
         &["run", "published-scenario", "zeros"],
         "The first forty steps of liu2017's scenario with extended filters, which the paper does not try: whether errors die out or add up.",

@@ -16,7 +16,7 @@ pub fn all() -> Vec<ProblemFile> {
 /// A draft with extended filters.
 pub(super) fn extended(draft: Draft) -> Draft {
     draft
-        .filter(FilterFile::Extended {})
+        .filter(FilterFile::Extended { iterations: None })
         .with(|problem| problem.format = FORMAT_2.into())
 }
 

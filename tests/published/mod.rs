@@ -15,6 +15,7 @@
 //! - `behaviours`: for each kind of filter what it has in none of the others;
 //! - `consistency`: the squares by which a filter is called consistent;
 //! - `correlated`: process and measurement noise that have something in common;
+//! - `iterated`: extended filters that linearise a measurement more than once;
 //! - `rejected`: problems that must be refused;
 //! - `write`: how a new case is certified, written and locked.
 
@@ -28,6 +29,7 @@ mod draft;
 mod equations;
 mod extended;
 mod fixed_gain;
+mod iterated;
 mod numbers;
 mod partial;
 mod rejected;
@@ -58,6 +60,7 @@ pub fn all() -> Vec<ProblemFile> {
         behaviours::all(),
         consistency::all(),
         correlated::all(),
+        iterated::all(),
     ]
     .concat()
 }

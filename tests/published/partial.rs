@@ -40,7 +40,7 @@ fn missing() -> Vec<ProblemFile> {
             "The first of four measurements lacks its first entry, the third its second: what is there is used with its own rows of H \
              and R, and the constant of the likelihood is that of one number.",
         ),
-        radar(FilterFile::Extended {}).lacks(&[(2, 1)]).named(
+        radar(FilterFile::Extended { iterations: None }).lacks(&[(2, 1)]).named(
             "missing.extended",
             &with_points,
             "An extended filter whose second measurement is a range alone.",
@@ -84,7 +84,7 @@ fn exact() -> Vec<ProblemFile> {
                 &[&flags[..], &["transition-order", "spread", "row-order", "full-correlation"]].concat(),
                 "The noise of two measured numbers is one and the same, up to a factor: R has rank one, and a combination is measured exactly.",
             ),
-        radar(FilterFile::Extended {})
+        radar(FilterFile::Extended { iterations: None })
             .keep(&[1])
             .with(|problem| problem.noise = rows([[0.0, 0.0], [0.0, 0.003]]))
             .named(

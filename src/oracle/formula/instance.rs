@@ -202,6 +202,7 @@ impl<'a> Instance<'a> {
             Given::MeasurementNoise => Some(problem.measurement_noise.clone()),
             Given::NoiseCrossCovariance => problem.filter(mode).noise_cross_covariance.clone(),
             Given::Measurement => column(self.record()?.measurement.as_ref()?.as_slice()),
+            Given::LinearisationPoint => column(self.record()?.linearisation_points.get(mode)?.as_ref()?.as_slice()),
             Given::Truth => column(self.record()?.truth.as_ref()?.as_slice()),
             Given::Chain => Some(DMatrix::from_fn(r, r, |i, k| problem.chain[i][k])),
             Given::Column => Some(DMatrix::from_fn(r, 1, |i, _| problem.chain[i][mode])),

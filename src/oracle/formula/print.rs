@@ -166,6 +166,7 @@ impl Given {
             Self::MeasurementNoise => "R",
             Self::NoiseCrossCovariance => "M",
             Self::Measurement => "z",
+            Self::LinearisationPoint => "the last iterate",
             Self::Truth => "truth",
             Self::Chain => "transition",
             Self::Column => "transition[·][j]",

@@ -229,7 +229,7 @@ fn of_filter(at: &Instance) -> Vec<Tree> {
         (PredictedCovariance, Transform::Linearised) => vec![by_motion(own(MotionJacobian))],
         (PredictedCovariance, Transform::Exact) => vec![linear_motion()],
         (MotionJacobian, _) => vec![own(MixedMean).unary(Operation::MotionSlope)],
-        (MeasurementJacobian, _) => vec![own(PredictedMean).unary(Operation::MeasurementSlope)],
+        (MeasurementJacobian, _) => vec![at.point_of_linearisation().unary(Operation::MeasurementSlope)],
         (PredictedMeasurement | InnovationCovariance | CrossCovariance, _) => of_measurement(at),
         _ => of_update(at),
     }
@@ -244,12 +244,19 @@ fn of_measurement(at: &Instance) -> Vec<Tree> {
     let (matrix, noise) = match &at.problem().filter(at.place.2).update {
         Update::Given(_) if at.place.1 == InnovationCovariance => return vec![given(Given::InnovationCovariance)],
         Update::By(Transform::Points(_)) => return of_points(at),
-        Update::By(Transform::Linearised) => (own(MeasurementJacobian), given(Given::MeasurementNoise)),
+        Update::By(Transform::Linearised) | Update::Iterated(_) => {
+            (own(MeasurementJacobian), given(Given::MeasurementNoise))
+        }
         Update::Converted(_) => (given(Given::MeasurementMatrix), own(ConvertedCovariance)),
         _ => (given(Given::MeasurementMatrix), given(Given::MeasurementNoise)),
     };
     match at.place.1 {
         PredictedMeasurement if at.measures_by_matrix() => vec![given(Given::MeasurementMatrix) * own(PredictedMean)],
+        PredictedMeasurement if at.is_iterated() => {
+            let point = || at.point_of_linearisation();
+            let way_back = own(PredictedMean) - point();
+            vec![point().unary(Operation::Measure) + point().unary(Operation::MeasurementSlope) * way_back]
+        }
         PredictedMeasurement => vec![own(PredictedMean).unary(Operation::Measure)],
         CrossCovariance => {
             let by_state = own(PredictedCovariance) * matrix.transpose();
@@ -406,7 +413,7 @@ impl Instance<'_> {
     /// H, where the filter has one.
     fn slope(&self) -> Option<Tree> {
         match &self.problem().filter(self.place.2).update {
-            Update::By(Transform::Linearised) => Some(own(Quantity::MeasurementJacobian)),
+            Update::By(Transform::Linearised) | Update::Iterated(_) => Some(own(Quantity::MeasurementJacobian)),
             Update::By(Transform::Exact) | Update::Converted(_) => Some(given(Given::MeasurementMatrix)),
             _ => None,
         }
@@ -423,6 +430,20 @@ impl Instance<'_> {
         })
     }
 
+    /// Whether the measurement is linearised elsewhere than at the predicted mean.
+    fn is_iterated(&self) -> bool {
+        matches!(self.problem().filter(self.place.2).update, Update::Iterated(times) if times.get() > 1)
+    }
+
+    /// Where the measurement is linearised.
+    fn point_of_linearisation(&self) -> Tree {
+        if self.is_iterated() {
+            given(Given::LinearisationPoint)
+        } else {
+            own(Quantity::PredictedMean)
+        }
+    }
+
     fn has_correlated_noises(&self) -> bool {
         self.problem().filter(self.place.2).noise_cross_covariance.is_some()
     }
@@ -431,7 +452,7 @@ impl Instance<'_> {
     fn noise(&self) -> Option<Tree> {
         match &self.problem().filter(self.place.2).update {
             Update::Converted(_) => Some(own(Quantity::ConvertedCovariance)),
-            Update::By(_) => Some(given(Given::MeasurementNoise)),
+            Update::By(_) | Update::Iterated(_) => Some(given(Given::MeasurementNoise)),
             Update::Given(_) => None,
         }
     }

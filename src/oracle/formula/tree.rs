@@ -44,6 +44,7 @@ pub(super) enum Given {
     MeasurementNoise,
     NoiseCrossCovariance,
     Measurement,
+    LinearisationPoint,
     Truth,
     Chain,
     /// What leads to the mode, by columns of the chain.

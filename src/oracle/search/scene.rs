@@ -31,7 +31,7 @@ impl Offer {
 
 /// Whether a kind needs format 2.
 fn is_new(kind: &str) -> bool {
-    ["extended", CORRELATED_NOISE].contains(&kind)
+    kind.starts_with("extended") || kind == CORRELATED_NOISE
 }
 
 /// Where a target moves and what is seen of it.
@@ -167,6 +167,7 @@ fn filter(draw: &mut Draw, kind: &str, n: usize) -> Value {
     match kind {
         CORRELATED_NOISE => json!({ "kind": "kalman" }),
         "kalman" | "extended" => json!({ "kind": kind }),
+        "extended-iterated" => json!({ "kind": "extended", "iterations": 2 + draw.below(3) }),
         "unscented" => {
             // n + λ = α² (n + κ) is positive in all of them, and negative is a weight in the last.
             let parameters = [

@@ -22,11 +22,14 @@ pub(super) fn apply<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
 
 /// The predicted measurement and the innovation.
 fn of_predicted_measurement<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
+    let points = draws_points(setup);
     let equations = &mut setup.equations;
     match id {
         // ẑ = h(x̂⁻)
         "measurement-of-the-mean" => {
-            equations.predicted_measurement = |problem, _, now, j| seen(problem, &now.predicted[j].mean, j);
+            if points {
+                equations.predicted_measurement = |problem, _, now, j| seen(problem, &now.predicted[j].mean, j);
+            }
         }
         // ẑ = h(x̂⁰ʲ)
         "measurement-of-the-mixed-mean" => {

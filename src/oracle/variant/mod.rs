@@ -164,7 +164,7 @@ impl Applies {
             Self::Kalman => !draws_points(setup) && problem.has_covariances(),
             Self::Linearised => {
                 let linearises = |filter: &Filter<T, Dyn, Dyn>| {
-                    filter.predict == Transform::Linearised || filter.update == Update::By(Transform::Linearised)
+                    filter.predict == Transform::Linearised || filter.linearises_the_measurement()
                 };
                 problem.filters.iter().any(linearises)
             }

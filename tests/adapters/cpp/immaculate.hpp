@@ -145,6 +145,7 @@ inline Measured measured(const Part &z) {
 inline std::string kind_of(const Part &problem) {
     const Part filter = problem["filter"];
     if (filter["kind"].text() == "cubature") return filter["rule"].text();
+    if (filter.has("iterations") && filter["iterations"].number() > 1) return "extended-iterated";
     const bool is_unmixed = filter["kind"].text() == "fixed-gain" && filter["mixing"].text() == "unmixed";
     return is_unmixed ? "fixed-gain-unmixed" : filter["kind"].text();
 }

@@ -7,6 +7,8 @@ function result = is_asked(filter, problem)
     kind = problem.filter.rule;
   elseif strcmp(kind, 'fixed-gain') && strcmp(problem.filter.mixing, 'unmixed')
     kind = 'fixed-gain-unmixed';
+  elseif isfield(problem.filter, 'iterations') && problem.filter.iterations > 1
+    kind = 'extended-iterated';
   end
   is_correlated = isfield(problem, 'modes') && iscell(problem.modes) && any(cellfun(@(mode) isfield(mode, 'M'), problem.modes));
   if is_correlated && ~any(strcmp('correlated-noise', filter.kinds))
