@@ -16,6 +16,8 @@
 //! - `consistency`: the squares by which a filter is called consistent;
 //! - `correlated`: process and measurement noise that have something in common;
 //! - `iterated`: extended filters that linearise a measurement more than once;
+//! - `pairs`: the common tracker, two modes of constant velocity;
+//! - `seen`: mixing and combination in steps that have a measurement;
 //! - `rejected`: problems that must be refused;
 //! - `write`: how a new case is certified, written and locked.
 
@@ -31,11 +33,13 @@ mod extended;
 mod fixed_gain;
 mod iterated;
 mod numbers;
+mod pairs;
 mod partial;
 mod rejected;
 mod rules;
 mod runs;
 mod scene;
+mod seen;
 mod steps;
 pub mod write;
 
@@ -61,6 +65,8 @@ pub fn all() -> Vec<ProblemFile> {
         consistency::all(),
         correlated::all(),
         iterated::all(),
+        pairs::all(),
+        seen::all(),
     ]
     .concat()
 }

@@ -45,6 +45,11 @@ fn missing() -> Vec<ProblemFile> {
             &with_points,
             "An extended filter whose second measurement is a range alone.",
         ),
+        radar(FilterFile::Extended { iterations: None }).lacks(&[(1, 0), (4, 1)]).named(
+            "missing.extended.either",
+            &with_points,
+            "An extended filter that has a bearing alone in its first measurement, and a range alone in its last.",
+        ),
         radar(filter("cubature-3")).lacks(&[(1, 0)]).named(
             "missing.cubature-3",
             &with_points,
