@@ -9,6 +9,7 @@ use common::{Scene, converted_scene, fixed_gain_scene, linear_scene, linear_scen
 use immaculate::filter::fixed_gain::FixedGain;
 use immaculate::filter::{Filter, Transform, Update};
 use immaculate::gaussian::Gaussian;
+use immaculate::imm::state_conversion::{Reader, StateConversion, StateConversions};
 use immaculate::imm::{Cause, Equations, Imm, Initial, Interaction, InvalidProblem, Problem, Quantity};
 use immaculate::matrix::{NotPositiveDefinite, cholesky};
 use immaculate::model::angle::wrap;
@@ -1263,6 +1264,119 @@ fn angles_are_entries_of_the_state_each_named_once() {
     }
 }
 
+/// Of the linear scene's three modes the second has a state of its own, as a matrix says; that conversion, changed, is wrong.
+fn with_conversions(change: impl FnOnce(&mut StateConversions<f64, U4>)) -> Scene {
+    let mut scene = linear_scene();
+    let conversion = |from, to| StateConversion {
+        from,
+        to,
+        map: Motion::Linear(Matrix4::identity() * 2.0),
+        added: Matrix4::zeros(),
+    };
+    let mut conversions = StateConversions {
+        list: vec![
+            conversion(0, Reader::Mode(1)),
+            conversion(2, Reader::Mode(1)),
+            conversion(1, Reader::Mode(0)),
+            conversion(1, Reader::Mode(2)),
+            conversion(1, Reader::Common),
+        ],
+        angles: vec![vec![]; 3],
+    };
+    change(&mut conversions);
+    scene.problem.interaction = Interaction::Converted(conversions);
+    scene
+}
+
+#[test]
+fn a_state_conversion_is_between_two_readers_and_there_once() {
+    assert!(with_conversions(|_| {}).try_run().is_ok());
+    let of = "(Granström, Willett and Bar-Shalom 2015)";
+    let ends: [(usize, Reader, &str); 4] = [
+        (3, Reader::Mode(1), "is of a mode that is not there"),
+        (0, Reader::Mode(3), "is of a mode that is not there"),
+        (
+            1,
+            Reader::Mode(1),
+            "is from a mode to itself, which reads its own estimate as it is",
+        ),
+        (
+            0,
+            Reader::Mode(1),
+            "is there twice; each reader reads a mode in one way",
+        ),
+    ];
+    for (from, to, reason) in ends {
+        let scene = with_conversions(|conversions| {
+            (conversions.list[3].from, conversions.list[3].to) = (from, to);
+        });
+        assert_sentence(&scene, &format!("`conversions[3]` {reason} {of}"));
+    }
+    let scene = with_conversions(|conversions| drop(conversions.angles.pop()));
+    assert_sentence(
+        &scene,
+        &format!("`conversions.angles` has 2 entries where there are 3 modes {of}"),
+    );
+    let scene = with_conversions(|conversions| conversions.angles[2] = vec![4]);
+    assert_sentence(
+        &scene,
+        "`angles` names entry 4 of a state of 4; it is not there, or named twice",
+    );
+    let scene = with_conversions(|conversions| conversions.list[2].added[(1, 0)] = 1.0);
+    assert_sentence(&scene, &format!("`conversions[2].added` is not symmetric {of}"));
+    let scene = with_conversions(|conversions| conversions.list[2].added = indefinite_if(true));
+    assert_sentence(
+        &scene,
+        &format!("`conversions[2].added` is not positive semidefinite {of}"),
+    );
+    let scene = with_conversions(|conversions| {
+        conversions.list[4].map = Motion::Linear(Matrix4::identity() * f64::NAN);
+    });
+    assert_sentence(
+        &scene,
+        "`conversions[4].matrix` has an entry that is not finite (liu2017 (26))",
+    );
+}
+
+#[test]
+fn a_kalman_filter_needs_a_matrix_from_its_state_to_the_common_one() {
+    let function = |results: usize| {
+        let formulas = [("a", "a*a"), ("b", "b"), ("c", "c"), ("d", "d")];
+        let function = Function::of_formulas(&["a", "b", "c", "d"], &[], &[], &[], &formulas[..results]).unwrap();
+        Motion::Function {
+            function: Arc::new(function),
+            given: vec![],
+        }
+    };
+    let mut scene = with_conversions(|conversions| conversions.list[4].map = function(4));
+    assert_sentence(
+        &scene,
+        "`conversions[4].formulas` is not linear, and the Kalman filter takes matrices; use an extended, unscented or cubature filter \
+         (zhu2016 (42))",
+    );
+    scene.problem.filters = vec![Filter::extended()];
+    assert!(scene.filter().is_ok());
+    // Between modes any function will do.
+    assert!(
+        with_conversions(|conversions| conversions.list[0].map = function(4))
+            .filter()
+            .is_ok()
+    );
+    let scene = with_conversions(|conversions| conversions.list[0].map = function(3));
+    assert_sentence(&scene, "`conversions[0].formulas` is 3 × 4 where 4 × 4 is needed");
+}
+
+#[test]
+fn filters_with_fixed_gains_have_one_state() {
+    let mut scene = fixed_gain_scene();
+    scene.problem.interaction = with_conversions(|_| {}).problem.interaction;
+    assert_sentence(
+        &scene,
+        "`conversions` are of means and covariances, and filters with fixed gains have no covariance; give all modes one state \
+         (derbez2000 (2))",
+    );
+}
+
 #[test]
 fn a_negative_range_and_a_bearing_in_degrees_are_refused() {
     let failure = |z: Vector2<f64>| {
@@ -1840,6 +1954,8 @@ fn problem_test(error: &InvalidProblem) -> &'static str {
         InvalidProblem::NotRangeAndBearing | InvalidProblem::CorrelatedNoise => {
             "a_conversion_needs_one_range_one_bearing_and_their_variances"
         }
+        InvalidProblem::Conversion { .. } => "a_state_conversion_is_between_two_readers_and_there_once",
+        InvalidProblem::ConversionsOfGiven => "filters_with_fixed_gains_have_one_state",
         InvalidProblem::Position { .. } => "the_measured_position_is_in_the_state",
         InvalidProblem::PositionTwice { .. } => "the_measured_position_has_two_coordinates",
     }

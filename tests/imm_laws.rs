@@ -1405,7 +1405,11 @@ impl<T: number::Real> AtRunTime<T> {
         Problem {
             modes: problem.modes.iter().map(mode).collect(),
             filters: problem.filters.iter().map(|filter| self.filter(filter)).collect(),
-            interaction: problem.interaction,
+            interaction: match &problem.interaction {
+                Interaction::Imm => Interaction::Imm,
+                Interaction::Unmixed => Interaction::Unmixed,
+                Interaction::Converted(_) => unreachable!("no scene of this file has one"),
+            },
             angles: problem.angles.clone(),
             chain: problem.chain.iter().map(|row| self.list(row)).collect(),
             sensor: match &problem.sensor {

@@ -3,7 +3,7 @@
 //! Method: files are made for states and measurements of many sizes, with matrices that are not special in any way. Kind of evidence:
 //! enclosures, and golden bits between two storages.
 
-use immaculate::imm::Imm;
+use immaculate::imm::{Imm, Interaction};
 use immaculate::matrix::{Holds, Shapes};
 use immaculate::number::RandomRounding;
 use immaculate::oracle::certify::certify;
@@ -136,7 +136,7 @@ where
             })
             .collect(),
         filters: vec![immaculate::filter::Filter::kalman()],
-        interaction: setup.problem.interaction,
+        interaction: Interaction::Imm,
         angles: Vec::new(),
         chain: setup.problem.chain.clone(),
         sensor: immaculate::model::Sensor::Linear(of(&setup.problem.h(), m, n)),

@@ -1444,7 +1444,7 @@ fn converted(conversion: Conversion) -> Scene {
 }
 
 /// Filters with fixed gains.
-fn fixed(interaction: Interaction) -> Scene {
+fn fixed(interaction: Interaction<f64, Dyn>) -> Scene {
     let mut scene = kalman();
     let given = |j: f64| FixedGain {
         gain: dmatrix![0.5 + 0.1 * j, 0.02; 0.2, 0.3 - 0.05 * j],

@@ -9,6 +9,7 @@ use immaculate::filter::fixed_gain::FixedGain;
 use immaculate::filter::{Filter, Transform, Update};
 use immaculate::gaussian::{Gaussian, log_density};
 use immaculate::imm::record::Input;
+use immaculate::imm::state_conversion::{Reader, StateConversion, StateConversions};
 use immaculate::imm::{Equations, Initial, Interaction, Needs, Problem, Quantity};
 use immaculate::matrix::ldl;
 use immaculate::model::function::Function;
@@ -606,6 +607,8 @@ fn scenes() -> Vec<Scene> {
         (ITERATED, iterated()),
         ("correlated noises", correlated()),
         ("changing steps", changing()),
+        ("states of their own", separate_states(Filter::kalman())),
+        ("states of their own, with points", separate_states(points(RULE))),
         ("heading", heading(Filter::extended())),
         ("heading with points", heading(points(RULE))),
         ("scalar", generic(1, 2, Sensor::Linear(dmatrix![0.8]), Filter::kalman())),
@@ -656,7 +659,7 @@ fn iterated() -> Setup<f64> {
 }
 
 /// Filters with fixed gains: those of the initial covariances, so that the filter follows what it measures.
-fn fixed(interaction: Interaction) -> Setup<f64> {
+fn fixed(interaction: Interaction<f64, Dyn>) -> Setup<f64> {
     let mut setup = linear(3);
     let h = setup.problem.h().into_owned();
     let of_mode = |estimate: &Gaussian<f64, Dyn>| {
@@ -749,6 +752,41 @@ fn heading(filter: Filter<f64, Dyn, Dyn>) -> Setup<f64> {
         *z = Some(dvector![6.5 - 3.9 * index(k), -3.4 + value(300 + k)]);
     }
     setup.measurements[3] = None;
+    assert_eq!(setup.problem.check(&setup.initial).err(), None);
+    setup
+}
+
+/// The second of three modes has a state of its own. It is read by a matrix, and reads the others by functions; one adds something.
+fn separate_states(filter: Filter<f64, Dyn, Dyn>) -> Setup<f64> {
+    let mut setup = linear(3);
+    setup.problem.filters = vec![filter];
+    let state = ["a", "b", "c", "d"];
+    let function = |formulas: [&str; 4]| {
+        let formulas: Vec<(&str, &str)> = state.into_iter().zip(formulas).collect();
+        Motion::Function {
+            function: Function::of_formulas(&state, &[], &[], &[], &formulas).unwrap().into(),
+            given: Vec::new(),
+        }
+    };
+    let back = matrix(4, 4, 900, 0.2) + DMatrix::identity(4, 4);
+    let conversion = |from, to, map, added: DMatrix<f64>| StateConversion { from, to, map, added };
+    let zero = || DMatrix::zeros(4, 4);
+    let bent = ["a + 0.02*b*c", "1.2*b - 0.1*a", "c + 0.01*a*a", "d + 0.3*b"];
+    let curved = ["1.1*a - 0.01*b*d", "b + 0.2*c", "c - 0.02*a*d", "0.9*d"];
+    let list = vec![
+        conversion(
+            0,
+            Reader::Mode(1),
+            function(bent),
+            DMatrix::from_diagonal(&dvector![0.0, 0.3, 0.0, 0.7]),
+        ),
+        conversion(2, Reader::Mode(1), function(curved), zero()),
+        conversion(1, Reader::Mode(0), Motion::Linear(back.clone()), zero()),
+        conversion(1, Reader::Mode(2), Motion::Linear(back.clone()), zero()),
+        conversion(1, Reader::Common, Motion::Linear(back), zero()),
+    ];
+    let angles = vec![vec![]; 3];
+    setup.problem.interaction = Interaction::Converted(StateConversions { list, angles });
     assert_eq!(setup.problem.check(&setup.initial).err(), None);
     setup
 }
@@ -895,7 +933,7 @@ fn on_enclosures(setup: &Setup<f64>) -> Setup<Enclosure> {
         problem: Problem {
             modes: modes.collect(),
             filters: problem.filters.iter().map(filter_on_enclosures).collect(),
-            interaction: problem.interaction,
+            interaction: without_conversions(&problem.interaction),
             angles: problem.angles.clone(),
             chain: problem.chain.iter().map(|row| list(row)).collect(),
             sensor,
@@ -910,6 +948,14 @@ fn on_enclosures(setup: &Setup<f64>) -> Setup<Enclosure> {
             .iter()
             .map(|z| z.as_ref().map(|z| z.map(Enclosure::exact)))
             .collect(),
+    }
+}
+
+fn without_conversions(interaction: &Interaction<f64, Dyn>) -> Interaction<Enclosure, Dyn> {
+    match interaction {
+        Interaction::Imm => Interaction::Imm,
+        Interaction::Unmixed => Interaction::Unmixed,
+        Interaction::Converted(_) => unreachable!("no problem that is put on enclosures has one"),
     }
 }
 

@@ -12,12 +12,13 @@
 //!
 //! | average | its reference |
 //! |---|---|
-//! | mixed, combined, and combined prediction | the estimate of the first mode |
+//! | mixed, combined, and combined prediction | the estimate of the first mode, in the state in which they are averaged |
 //! | points that went through the motion | the mixed mean, moved |
 //! | deviations from a mean | that mean |
 
 use super::Equations;
 use super::problem::Problem;
+use super::state_conversion::{Reader, estimates_read};
 use crate::filter::Transform;
 use crate::gaussian::Gaussian;
 use crate::matrix::{Holds, Shapes};
@@ -68,38 +69,68 @@ where
     mean
 }
 
-/// Estimates with their angles in the turn of a reference; as they are where there is no angle.
+/// The estimates of all modes in the state of a reader, their angles in the turn of the first one.
+pub(crate) fn estimates_near_first<'a, T: Real, N: Dim, M: Dim>(
+    problem: &Problem<T, N, M>,
+    estimates: &'a [Gaussian<T, N>],
+    reader: Reader,
+) -> Cow<'a, [Gaussian<T, N>]>
+where
+    Shapes: Holds<N, M>,
+{
+    let read = estimates_read(problem, estimates, reader);
+    in_one_turn(problem.angles_of(reader), read, None)
+}
+
+/// The estimates of all modes in the state of a reader, their angles in the turn of a reference.
 pub(crate) fn estimates_near<'a, T: Real, N: Dim, M: Dim>(
     problem: &Problem<T, N, M>,
     estimates: &'a [Gaussian<T, N>],
+    reader: Reader,
     reference: &OVector<T, N>,
 ) -> Cow<'a, [Gaussian<T, N>]>
 where
     Shapes: Holds<N, M>,
 {
-    if problem.angles.is_empty() {
-        return Cow::Borrowed(estimates);
+    let read = estimates_read(problem, estimates, reader);
+    in_one_turn(problem.angles_of(reader), read, Some(reference))
+}
+
+/// Estimates with their angles in the turn of a reference, or of the first of them; as they are where there is no angle.
+fn in_one_turn<'a, T: Real, N: Dim>(
+    angles: &[usize],
+    estimates: Cow<'a, [Gaussian<T, N>]>,
+    reference: Option<&OVector<T, N>>,
+) -> Cow<'a, [Gaussian<T, N>]>
+where
+    Shapes: Holds<N>,
+{
+    if angles.is_empty() {
+        return estimates;
     }
+    let reference = reference.unwrap_or(&estimates[0].mean);
     let near = |estimate: &Gaussian<T, N>| Gaussian {
-        mean: in_the_turn_of(&problem.angles, reference, &estimate.mean),
+        mean: in_the_turn_of(angles, reference, &estimate.mean),
         covariance: estimate.covariance.clone(),
     };
     Cow::Owned(estimates.iter().map(near).collect())
 }
 
-/// Points with their angles in the turn of a reference; as they are where there is no angle.
+/// Points of mode j with their angles in the turn of a reference; as they are where there is no angle.
 pub(crate) fn points_near<'a, T: Real, N: Dim, M: Dim>(
     problem: &Problem<T, N, M>,
+    j: usize,
     points: &'a [OVector<T, N>],
     reference: &OVector<T, N>,
 ) -> Cow<'a, [OVector<T, N>]>
 where
     Shapes: Holds<N, M>,
 {
-    if problem.angles.is_empty() {
+    let angles = problem.angles_of(Reader::Mode(j));
+    if angles.is_empty() {
         return Cow::Borrowed(points);
     }
-    let near = |point| in_the_turn_of(&problem.angles, reference, point);
+    let near = |point| in_the_turn_of(angles, reference, point);
     Cow::Owned(points.iter().map(near).collect())
 }
 
@@ -135,27 +166,32 @@ where
         Self {
             mixed_mean: |problem, previous, now, j| {
                 let mean = (Self::standard().mixed_mean)(problem, previous, now, j);
-                let means = previous.updated.iter().map(|estimate| &estimate.mean);
-                with_mean_directions(&problem.angles, &now.mixing_probabilities[j], &means, mean)
+                let reader = Reader::Mode(j);
+                let estimates = estimates_read(problem, &previous.updated, reader);
+                let means = estimates.iter().map(|estimate| &estimate.mean);
+                let weights = &now.mixing_probabilities[j];
+                with_mean_directions(problem.angles_of(reader), weights, &means, mean)
             },
             predicted_mean: |problem, previous, now, j| {
                 let mean = (Self::standard().predicted_mean)(problem, previous, now, j);
                 match &problem.filter(j).predict {
                     Transform::Points(rule) => {
                         let points = now.propagated_points[j].iter();
-                        with_mean_directions(&problem.angles, &rule.weights, &points, mean)
+                        with_mean_directions(problem.angles_of(Reader::Mode(j)), &rule.weights, &points, mean)
                     }
                     Transform::Exact | Transform::Linearised => mean,
                 }
             },
             combined_prediction_mean: |problem, previous, now, j| {
                 let mean = (Self::standard().combined_prediction_mean)(problem, previous, now, j);
-                let means = now.predicted.iter().map(|estimate| &estimate.mean);
+                let estimates = estimates_read(problem, &now.predicted, Reader::Common);
+                let means = estimates.iter().map(|estimate| &estimate.mean);
                 with_mean_directions(&problem.angles, &now.predicted_mode_probabilities, &means, mean)
             },
             combined_mean: |problem, previous, now, j| {
                 let mean = (Self::standard().combined_mean)(problem, previous, now, j);
-                let means = now.updated.iter().map(|estimate| &estimate.mean);
+                let estimates = estimates_read(problem, &now.updated, Reader::Common);
+                let means = estimates.iter().map(|estimate| &estimate.mean);
                 with_mean_directions(&problem.angles, &now.mode_probabilities, &means, mean)
             },
             ..self

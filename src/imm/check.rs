@@ -71,9 +71,10 @@ where
         }
         check_semidefinite(&self.measurement_noise, "R".into(), "liu2017 (19)")?;
         self.check_sensor()?;
-        self.check_angles()?;
+        check_places_of_angles(&self.angles, self.n().value())?;
         self.check_filters()?;
         self.check_noise_cross_covariances()?;
+        self.check_conversions()?;
         check_length("initial.modes", estimates.modes.len(), self.modes.len(), "zhu2016 (55)")
     }
 
@@ -101,7 +102,7 @@ where
         let n = N::try_to_usize().unwrap_or_else(|| self.n().value());
         let m = self.m().value();
         for (j, mode) in self.modes.iter().enumerate() {
-            check_shape_of_motion(&mode.motion, j, n)?;
+            check_shape_of_motion(&mode.motion, fields_of_motion(j), n)?;
             check_shape(&mode.noise, format!("modes[{j}].Q"), (n, n))?;
         }
         check_shape(&self.measurement_noise, "R".into(), (m, m))?;
@@ -195,17 +196,6 @@ where
         }
     }
 
-    /// Angles are entries of the state, each named once.
-    fn check_angles(&self) -> Result<(), InvalidProblem> {
-        let dimension = self.n().value();
-        for (place, &index) in self.angles.iter().enumerate() {
-            if index >= dimension || self.angles[..place].contains(&index) {
-                return Err(InvalidProblem::Angle { index, dimension });
-            }
-        }
-        Ok(())
-    }
-
     fn check_filters(&self) -> Result<(), InvalidProblem> {
         if self.filters.len() != 1 {
             check_length("filters", self.filters.len(), self.modes.len(), "zhu2016 (55)")?;
@@ -241,18 +231,11 @@ where
 
     /// A motion has finite numbers, and is a matrix where no points are drawn.
     fn check_motion(&self, j: usize, motion: &Motion<T, N>) -> Result<(), InvalidProblem> {
-        match motion {
-            Motion::Linear(f) => check_finite(f, format!("modes[{j}].F"), "liu2017 (26)"),
-            Motion::Affine { matrix, offset } => {
-                check_finite(matrix, format!("modes[{j}].F"), "liu2017 (26)")?;
-                check_finite(offset, format!("modes[{j}].f"), "liu2017 (1)")
-            }
-            Motion::Function { .. } if self.filter(j).predict == Transform::Exact => {
-                let field = format!("modes[{j}].f");
-                Err(InvalidProblem::NotLinear { field })
-            }
-            Motion::Function { given, .. } => check_given_values(given, &format!("modes[{j}].f")),
+        if !motion.is_linear() && self.filter(j).predict == Transform::Exact {
+            let field = format!("modes[{j}].f");
+            return Err(InvalidProblem::NotLinear { field });
         }
+        check_numbers_of_motion(motion, fields_of_motion(j))
     }
 
     fn check_conversion(&self) -> Result<(), InvalidProblem> {
@@ -301,7 +284,7 @@ where
     Ok(())
 }
 
-fn check_shape<T: Field, R: Dim, C: Dim>(
+pub(super) fn check_shape<T: Field, R: Dim, C: Dim>(
     matrix: &OMatrix<T, R, C>,
     field: String,
     expected: (usize, usize),
@@ -319,21 +302,56 @@ fn check_same_shape(found: (usize, usize), field: String, expected: (usize, usiz
     Err(InvalidProblem::Shape { field, found, expected })
 }
 
-fn check_shape_of_motion<T: Field, N: Dim>(motion: &Motion<T, N>, j: usize, n: usize) -> Result<(), InvalidProblem>
+/// Where the matrix, or the function, of a mode's motion stands.
+fn fields_of_motion(j: usize) -> [String; 2] {
+    ["F", "f"].map(|key| format!("modes[{j}].{key}"))
+}
+
+/// A motion is of n components; `fields` says where its matrix and its function stand.
+pub(super) fn check_shape_of_motion<T: Field, N: Dim>(
+    motion: &Motion<T, N>,
+    [of_matrix, of_function]: [String; 2],
+    n: usize,
+) -> Result<(), InvalidProblem>
 where
     Shapes: Holds<N>,
 {
-    let field = format!("modes[{j}].F");
     match motion {
-        Motion::Linear(f) => check_shape(f, field, (n, n)),
+        Motion::Linear(f) => check_shape(f, of_matrix, (n, n)),
         Motion::Affine { matrix, offset } => {
-            check_shape(matrix, field, (n, n))?;
-            check_shape(offset, format!("modes[{j}].f"), (n, 1))
+            check_shape(matrix, of_matrix, (n, n))?;
+            check_shape(offset, of_function, (n, 1))
         }
-        Motion::Function { function, given } => {
-            check_shape_of_function(function, given.len(), format!("modes[{j}].f"), (n, n))
+        Motion::Function { function, given } => check_shape_of_function(function, given.len(), of_function, (n, n)),
+    }
+}
+
+/// The numbers of a motion are finite.
+pub(super) fn check_numbers_of_motion<T: Real, N: Dim>(
+    motion: &Motion<T, N>,
+    [of_matrix, of_function]: [String; 2],
+) -> Result<(), InvalidProblem>
+where
+    Shapes: Holds<N>,
+{
+    match motion {
+        Motion::Linear(f) => check_finite(f, of_matrix, "liu2017 (26)"),
+        Motion::Affine { matrix, offset } => {
+            check_finite(matrix, of_matrix, "liu2017 (26)")?;
+            check_finite(offset, of_function, "liu2017 (1)")
+        }
+        Motion::Function { given, .. } => check_given_values(given, &of_function),
+    }
+}
+
+/// Angles are entries of a state, each named once.
+pub(super) fn check_places_of_angles(angles: &[usize], dimension: usize) -> Result<(), InvalidProblem> {
+    for (place, &index) in angles.iter().enumerate() {
+        if index >= dimension || angles[..place].contains(&index) {
+            return Err(InvalidProblem::Angle { index, dimension });
         }
     }
+    Ok(())
 }
 
 /// A function takes the state and what it is given, and gives as many components as are needed.
@@ -358,7 +376,12 @@ fn check_given_values<T: Real>(given: &[T], field: &str) -> Result<(), InvalidPr
     })
 }
 
-fn check_length(field: &str, found: usize, expected: usize, equation: &'static str) -> Result<(), InvalidProblem> {
+pub(super) fn check_length(
+    field: &str,
+    found: usize,
+    expected: usize,
+    equation: &'static str,
+) -> Result<(), InvalidProblem> {
     if found == expected {
         return Ok(());
     }
@@ -457,7 +480,7 @@ where
 
 /// A covariance of what may be known exactly, or of noise that there need not be: of an initial estimate, Q and R. Whether S is definite
 /// shows at every step.
-fn check_semidefinite<T: Real, D: Dim>(
+pub(super) fn check_semidefinite<T: Real, D: Dim>(
     matrix: &OMatrix<T, D, D>,
     field: String,
     equation: &'static str,

@@ -14,9 +14,10 @@
 //! };
 //! ```
 
-use super::angles::{estimates_near, points_near, wrapped};
+use super::angles::{estimates_near, estimates_near_first, points_near, wrapped};
 use super::probability;
 use super::problem::Interaction;
+use super::state_conversion::Reader;
 use super::{Problem, Step};
 use crate::filter::{Transform, Update, converted, correlated, cubature, extended, iterated, kalman, update};
 use crate::gaussian::{log_density, mixture_covariance, mixture_mean};
@@ -83,7 +84,7 @@ where
     pub predicted_measurement: Equation<T, N, M, OVector<T, M>>,
     /// ν, [`Sensor::difference`](crate::model::Sensor::difference).
     pub innovation: OfMeasurement<T, N, M, OVector<T, M>>,
-    /// H, [`extended::measurement_jacobian`]; none for a filter that does not linearise the measurement.
+    /// H, [`extended::measurement_jacobian`], of the mode's own state; none for a filter that does not linearise the measurement.
     pub measurement_jacobian: Equation<T, N, M, Option<OMatrix<T, M, N>>>,
     /// S, [`kalman::innovation_covariance`] or [`cubature::innovation_covariance`].
     pub innovation_covariance: Equation<T, N, M, OMatrix<T, M, M>>,
@@ -134,8 +135,8 @@ where
             predicted_mode_probability: |problem, previous, _, j| {
                 probability::predicted_mode_probability(&problem.chain, &previous.mode_probabilities, j)
             },
-            mixing_probabilities: |problem, previous, now, j| match problem.interaction {
-                Interaction::Imm => {
+            mixing_probabilities: |problem, previous, now, j| match &problem.interaction {
+                Interaction::Imm | Interaction::Converted(_) => {
                     let (chain, probabilities) = (&problem.chain, &previous.mode_probabilities);
                     let predicted = &now.predicted_mode_probabilities[j];
                     let mixing = |i| probability::mixing_probability(chain, probabilities, predicted, i, j);
@@ -147,12 +148,12 @@ where
                 }
             },
             mixed_mean: |problem, previous, now, j| {
-                let estimates = estimates_near(problem, &previous.updated, &previous.updated[0].mean);
+                let estimates = estimates_near_first(problem, &previous.updated, Reader::Mode(j));
                 mixture_mean(&now.mixing_probabilities[j], &estimates)
             },
             mixed_covariance: |problem, previous, now, j| {
                 let mean = &now.mixed[j].mean;
-                let estimates = estimates_near(problem, &previous.updated, mean);
+                let estimates = estimates_near(problem, &previous.updated, Reader::Mode(j), mean);
                 mixture_covariance(&now.mixing_probabilities[j], &estimates, mean)
             },
 
@@ -172,12 +173,12 @@ where
                     Motion::Linear(f) => kalman::predicted_mean(f, &now.mixed[j].mean),
                     motion => motion.of(&now.mixed[j].mean),
                 },
-                Transform::Points(rule) if problem.angles.is_empty() => {
+                Transform::Points(rule) if problem.angles_of(Reader::Mode(j)).is_empty() => {
                     cubature::weighted_mean(&rule.weights, &now.propagated_points[j])
                 }
                 Transform::Points(rule) => {
                     let centre = problem.modes[j].motion.of(&now.mixed[j].mean);
-                    let points = points_near(problem, &now.propagated_points[j], &centre);
+                    let points = points_near(problem, j, &now.propagated_points[j], &centre);
                     cubature::weighted_mean(&rule.weights, &points)
                 }
             },
@@ -194,18 +195,18 @@ where
                     }
                     Transform::Points(rule) => {
                         let mean = &now.predicted[j].mean;
-                        let points = points_near(problem, &now.propagated_points[j], mean);
+                        let points = points_near(problem, j, &now.propagated_points[j], mean);
                         cubature::weighted_covariance(&rule.covariance_weights, &points, mean, q)
                     }
                 }
             },
             combined_prediction_mean: |problem, _, now, _| {
-                let estimates = estimates_near(problem, &now.predicted, &now.predicted[0].mean);
+                let estimates = estimates_near_first(problem, &now.predicted, Reader::Common);
                 mixture_mean(&now.predicted_mode_probabilities, &estimates)
             },
             combined_prediction_covariance: |problem, _, now, _| {
                 let mean = &now.combined_prediction.mean;
-                let estimates = estimates_near(problem, &now.predicted, mean);
+                let estimates = estimates_near(problem, &now.predicted, Reader::Common, mean);
                 mixture_covariance(&now.predicted_mode_probabilities, &estimates, mean)
             },
 
@@ -229,12 +230,12 @@ where
             measured_points: |problem, _, now, j| {
                 now.predicted_points[j]
                     .iter()
-                    .map(|point| problem.sensor.of(point))
+                    .map(|point| seen(problem, point, j))
                     .collect()
             },
             predicted_measurement: |problem, _, now, j| match &problem.filter(j).update {
                 Update::By(Transform::Points(rule)) => {
-                    let centre = problem.sensor.of(&now.predicted[j].mean);
+                    let centre = seen(problem, &now.predicted[j].mean, j);
                     problem.sensor.mean(&rule.weights, &now.measured_points[j], &centre)
                 }
                 _ => match &now.linearisation_points[j] {
@@ -248,7 +249,7 @@ where
             measurement_jacobian: |problem, _, now, j| {
                 let at = now.linearisation_points[j].as_ref().unwrap_or(&now.predicted[j].mean);
                 let linearises = problem.filter(j).linearises_the_measurement();
-                linearises.then(|| extended::measurement_jacobian(&problem.sensor, at))
+                linearises.then(|| problem.slopes_of_measurement(j, at))
             },
             innovation_covariance: |problem, _, now, j| match &problem.filter(j).update {
                 Update::By(Transform::Points(rule)) => cubature::innovation_covariance(
@@ -296,7 +297,7 @@ where
             },
             updated_mean: |problem, _, now, j| {
                 let mean = update::updated_mean(&now.predicted[j].mean, &now.gains[j], &now.innovations[j]);
-                wrapped(&problem.angles, mean)
+                wrapped(problem.angles_of(Reader::Mode(j)), mean)
             },
             updated_covariance: |_, _, now, j| {
                 let innovation_covariance = &now.innovation_covariances[j];
@@ -311,7 +312,9 @@ where
                 ))
             },
 
-            undetected_mean: |problem, _, now, j| wrapped(&problem.angles, now.predicted[j].mean.clone()),
+            undetected_mean: |problem, _, now, j| {
+                wrapped(problem.angles_of(Reader::Mode(j)), now.predicted[j].mean.clone())
+            },
             undetected_covariance: |_, _, now, j| now.predicted[j].covariance.clone(),
             undetected_log_likelihood: |_, _, _, _| None,
             undetected_mode_probability: |_, _, now, j| now.predicted_mode_probabilities[j].clone(),
@@ -330,12 +333,12 @@ where
                 probability::mode_probability(&now.relative_likelihoods[j], predicted, &now.evidence)
             },
             combined_mean: |problem, _, now, _| {
-                let estimates = estimates_near(problem, &now.updated, &now.updated[0].mean);
+                let estimates = estimates_near_first(problem, &now.updated, Reader::Common);
                 mixture_mean(&now.mode_probabilities, &estimates)
             },
             combined_covariance: |problem, _, now, _| {
                 let mean = &now.combined.mean;
-                let estimates = estimates_near(problem, &now.updated, mean);
+                let estimates = estimates_near(problem, &now.updated, Reader::Common, mean);
                 mixture_covariance(&now.mode_probabilities, &estimates, mean)
             },
             nees: |problem, _, now, _| {
@@ -377,7 +380,7 @@ where
 {
     match now.measurement_jacobians.get(j) {
         Some(Some(jacobian)) => Cow::Borrowed(jacobian),
-        _ => problem.h(),
+        _ => problem.h_of(j),
     }
 }
 
@@ -390,6 +393,7 @@ pub(crate) fn seen<T: Real, N: Dim, M: Dim>(
 where
     Shapes: Holds<N, M>,
 {
+    let state = &*problem.in_common_state(j, state);
     match &problem.filter(j).update {
         Update::Converted(_) => &*problem.h() * state,
         _ => problem.sensor.of(state),

@@ -146,6 +146,19 @@ pub enum InvalidProblem {
         "`R` has a covariance between range and bearing; a conversion knows only their variances (sustika2015 (4))"
     )]
     CorrelatedNoise,
+    /// A conversion of estimates is of no two readers, or not the only one of them.
+    #[error("`conversions[{index}]` {reason} (Granström, Willett and Bar-Shalom 2015)")]
+    Conversion {
+        /// The conversion, counted from 0.
+        index: usize,
+        /// What is wrong.
+        reason: &'static str,
+    },
+    /// Estimates without covariances are to be converted.
+    #[error(
+        "`conversions` are of means and covariances, and filters with fixed gains have no covariance; give all modes one state (derbez2000 (2))"
+    )]
+    ConversionsOfGiven,
     /// A rule's points and weights differ in number.
     #[error("`rule` has {points} points, {weights} weights and {covariance_weights} covariance weights (zhu2016 (21))")]
     RuleLengths {

@@ -24,6 +24,7 @@
 //! - [`cycle`]: the one wiring that runs a table;
 //! - [`angles`]: what is averaged where an entry of the state is an angle;
 //! - [`unequal`]: what is mixed where one mode has an entry of the state that another lacks;
+//! - [`state_conversion`]: how modes whose states mean different things read each other;
 //! - [`plain_bearing`]: bearings that are never wrapped;
 //! - [`printed`]: what the papers print wrongly.
 //!
@@ -31,6 +32,7 @@
 
 pub mod angles;
 mod check;
+mod check_states;
 pub mod cycle;
 mod entries;
 pub mod equations;
@@ -44,6 +46,7 @@ pub mod problem;
 pub mod record;
 pub mod row;
 pub mod tables;
+pub mod state_conversion;
 pub mod unequal;
 pub mod update;
 

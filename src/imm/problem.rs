@@ -9,6 +9,7 @@
 //! ```
 
 use super::record::Needs;
+use super::state_conversion::StateConversions;
 use crate::filter::{Filter, Transform, Update};
 use crate::gaussian::Gaussian;
 use crate::matrix::{Holds, Shapes, rows};
@@ -29,8 +30,9 @@ where
     /// The filter of each mode; a single one serves all modes.
     pub filters: Vec<Filter<T, N, M>>,
     /// Which estimates the filters start from.
-    pub interaction: Interaction,
-    /// Which entries of the state are angles, in radians, such as a heading: [`angles`](super::angles). Most states have none.
+    pub interaction: Interaction<T, N>,
+    /// Which entries of the state are angles, in radians, such as a heading: [`angles`](super::angles). Most states have none. Modes may
+    /// have states of their own, [`Interaction::Converted`]; then these are the angles of the state in which they are combined.
     pub angles: Vec<usize>,
     /// The Markov chain of the modes: `chain[i][j]` = P(mode j at k ∣ mode i at k−1); rows sum to one.
     pub chain: Vec<Vec<T>>,
@@ -54,8 +56,11 @@ where
 }
 
 /// Which estimates the filters of the modes start from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Interaction {
+#[derive(Debug, Clone, PartialEq)]
+pub enum Interaction<T: Field, N: Dim>
+where
+    Shapes: Holds<N>,
+{
     /// Each from the estimates of all modes, mixed: the interacting multiple model filter.
     Imm,
     /// Each from its own: the update of fixed gains read as it is printed, without mixed states — derbez2000 (fixed-gain-update).
@@ -97,6 +102,42 @@ pub enum Interaction {
     ///
     /// Evidence: `unmixed_modes_with_fixed_gains_stand_alone` (exact).
     Unmixed,
+    /// As [`Interaction::Imm`], where modes have states of their own: [`state_conversion`](super::state_conversion).
+    ///
+    /// Source: there.
+    ///
+    /// Example: two walks, the second of which counts in units half as large. It is read by ½, and reads by 2.
+    ///
+    /// ```
+    /// use immaculate::filter::Filter;
+    /// use immaculate::imm::state_conversion::{Reader, StateConversion, StateConversions};
+    /// use immaculate::{gaussian::Gaussian, imm::{Imm, Initial, Interaction, Problem}};
+    /// use immaculate::model::{Sensor, motion::{Mode, Motion}};
+    /// use nalgebra::{matrix, vector};
+    ///
+    /// let mode = |q| Mode { name: "walk".into(), motion: Motion::Linear(matrix![1.0]), noise: matrix![q] };
+    /// let by = |factor, from, to| StateConversion { from, to, map: Motion::Linear(matrix![factor]), added: matrix![0.0] };
+    /// let list = vec![by(2.0, 0, Reader::Mode(1)), by(0.5, 1, Reader::Mode(0)), by(0.5, 1, Reader::Common)];
+    /// let problem = Problem {
+    ///     modes: vec![mode(1.0), mode(4.0)],
+    ///     filters: vec![Filter::kalman()],
+    ///     interaction: Interaction::Converted(StateConversions { list, angles: vec![vec![], vec![]] }),
+    ///     angles: vec![],
+    ///     chain: vec![vec![0.5, 0.5], vec![0.5, 0.5]],
+    ///     sensor: Sensor::Linear(matrix![1.0]),
+    ///     measurement_noise: matrix![2.0],
+    /// };
+    /// let at = |x, p| Gaussian { mean: vector![x], covariance: matrix![p] };
+    /// let initial = Initial { modes: vec![at(3.0, 1.0), at(6.0, 4.0)], mode_probabilities: vec![0.5, 0.5] };
+    /// let mut filter = Imm::new(problem, &initial)?;
+    /// let step = filter.step(Some(&vector![7.0]))?;
+    /// assert_eq!([&step.mixed[0].mean, &step.mixed[1].mean], [&vector![3.0], &vector![6.0]]);
+    /// assert_eq!(step.combined.mean, vector![5.0]); // 3 + ½ · (7 − 3), since the gain is (1 + 1) / (1 + 1 + 2)
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// Evidence: `one_problem_in_two_coordinate_systems_has_one_combined_estimate` (state_conversions).
+    Converted(StateConversions<T, N>),
 }
 
 /// The estimate at step 0.

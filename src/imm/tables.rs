@@ -78,7 +78,7 @@ where
                 }
                 Transform::Points(rule) => {
                     let mean = &now.predicted[j].mean;
-                    let points = points_near(problem, &now.propagated_points[j], mean);
+                    let points = points_near(problem, j, &now.propagated_points[j], mean);
                     raw::raw_covariance(&rule.covariance_weights, &points, mean, &problem.modes[j].noise)
                 }
             },

@@ -11,10 +11,12 @@
 //!
 //! The tables of [`Equations`] are *embedded*: it is what the law of total covariance gives for the models as they are stated. The others
 //! are made from such a table by [`Equations::with_index_wise_mixing`] and [`Equations::with_unbiased_mixing`]. Where no mode lacks an
-//! entry all three are the same.
+//! entry all three are the same. Where modes have states of their own, what one lacks of another's is said by their conversion,
+//! [`state_conversion`](super::state_conversion), and *embedded* is the only mixing.
 
-use super::angles::estimates_near;
-use super::{Equations, Problem, Step};
+use super::Equations;
+use super::angles::{estimates_near, estimates_near_first};
+use super::state_conversion::Reader;
 use crate::gaussian::{Gaussian, mixture_covariance, mixture_mean};
 use crate::matrix::{Holds, Shapes, rows};
 use crate::model::motion::Mode;
@@ -134,18 +136,12 @@ where
     estimate
 }
 
-/// The estimates of all modes as they are mixed for mode j, angles in the turn of a reference: each with what it lacks taken from j.
-fn augmented_for<T: Real, N: Dim, M: Dim>(
-    problem: &Problem<T, N, M>,
-    previous: &Step<T, N, M>,
-    reference: &OVector<T, N>,
-    j: usize,
-) -> Vec<Gaussian<T, N>>
+/// The estimates of all modes as they are mixed for mode j: each with what it lacks taken from j.
+fn augmented_for<T: Field, N: Dim>(estimates: &[Gaussian<T, N>], modes: &[Mode<T, N>], j: usize) -> Vec<Gaussian<T, N>>
 where
-    Shapes: Holds<N, M>,
+    Shapes: Holds<N>,
 {
-    let estimates = estimates_near(problem, &previous.updated, reference);
-    let with_modes = estimates.iter().zip(&problem.modes);
+    let with_modes = estimates.iter().zip(modes);
     with_modes
         .map(|(estimate, mode)| augmented(estimate, &estimates[j], mode))
         .collect()
@@ -161,17 +157,17 @@ where
         Self {
             mixed_covariance: |problem, previous, now, j| {
                 let (weights, mean) = (&now.mixing_probabilities[j], &now.mixed[j].mean);
-                let estimates = estimates_near(problem, &previous.updated, mean);
+                let estimates = estimates_near(problem, &previous.updated, Reader::Mode(j), mean);
                 index_wise_covariance(weights, &estimates, mean, &problem.modes)
             },
             combined_prediction_covariance: |problem, _, now, _| {
                 let (weights, mean) = (&now.predicted_mode_probabilities, &now.combined_prediction.mean);
-                let estimates = estimates_near(problem, &now.predicted, mean);
+                let estimates = estimates_near(problem, &now.predicted, Reader::Common, mean);
                 index_wise_covariance(weights, &estimates, mean, &problem.modes)
             },
             combined_covariance: |problem, _, now, _| {
                 let (weights, mean) = (&now.mode_probabilities, &now.combined.mean);
-                let estimates = estimates_near(problem, &now.updated, mean);
+                let estimates = estimates_near(problem, &now.updated, Reader::Common, mean);
                 index_wise_covariance(weights, &estimates, mean, &problem.modes)
             },
             ..self
@@ -183,12 +179,15 @@ where
     pub fn with_unbiased_mixing(self) -> Self {
         Self {
             mixed_mean: |problem, previous, now, j| {
-                let estimates = augmented_for(problem, previous, &previous.updated[0].mean, j);
-                mixture_mean(&now.mixing_probabilities[j], &estimates)
+                let estimates = estimates_near_first(problem, &previous.updated, Reader::Mode(j));
+                let augmented = augmented_for(&estimates, &problem.modes, j);
+                mixture_mean(&now.mixing_probabilities[j], &augmented)
             },
             mixed_covariance: |problem, previous, now, j| {
-                let estimates = augmented_for(problem, previous, &now.mixed[j].mean, j);
-                mixture_covariance(&now.mixing_probabilities[j], &estimates, &now.mixed[j].mean)
+                let mean = &now.mixed[j].mean;
+                let estimates = estimates_near(problem, &previous.updated, Reader::Mode(j), mean);
+                let augmented = augmented_for(&estimates, &problem.modes, j);
+                mixture_covariance(&now.mixing_probabilities[j], &augmented, mean)
             },
             ..self
         }

@@ -17,7 +17,7 @@ use crate::model::formula::{Fault, InvalidFormula, InvalidName, check_names};
 use crate::model::function::{Function, InvalidFunction};
 use crate::model::motion::Motion;
 use crate::model::registry::{Model, ModelKind, model, models};
-use crate::model::space::{ComponentKind, InvalidSpace, Space};
+use crate::model::space::{InvalidSpace, Space};
 use crate::model::{Sensor, nearest::nearest};
 use crate::number::{Rational, Real};
 use nalgebra::{DMatrix, DVector, Dyn};
@@ -47,11 +47,13 @@ pub(super) struct Functions {
     pub(super) modes: Vec<[Option<Bound>; 2]>,
     /// Of each sensor the measurement.
     pub(super) sensors: Vec<Option<(Bound, Arc<Space>)>>,
+    /// Of each conversion the map, if it is given by formulas.
+    pub(super) conversions: Vec<Option<Bound>>,
 }
 
 /// The names that formulas may use.
 #[derive(Clone)]
-struct Scope<'a> {
+pub(super) struct Scope<'a> {
     parameters: Vec<(&'a str, Source)>,
     /// Definitions with their places.
     definitions: Vec<(String, &'a [String; 2])>,
@@ -67,8 +69,10 @@ impl ProblemFile {
         let is_plain = |mode: &ModeFile| mode.models == super::models::ModeModels::default();
         let sensors = self.sensors_at();
         let is_function = |sensor: &SensorAt| sensor.measurement.is_function();
-        if self.definitions.is_empty() && !sensors.iter().any(is_function) && self.modes.iter().all(is_plain) {
+        let has_functions = !self.definitions.is_empty() || !self.conversions.is_empty();
+        if !has_functions && !sensors.iter().any(is_function) && self.modes.iter().all(is_plain) {
             return Ok(Functions {
+                conversions: Vec::new(),
                 modes: self.modes.iter().map(|_| [None, None]).collect(),
                 sensors: sensors.iter().map(|_| None).collect(),
             });
@@ -78,6 +82,7 @@ impl ProblemFile {
         let mut modes = Vec::with_capacity(self.modes.len());
         for (j, mode) in self.modes.iter().enumerate() {
             let place = format!("problem.modes[{j}]");
+            let state = self.space_of(j)?;
             let scope = scope.with(&place, &state, &mode.models.parameters, &mode.models.definitions)?;
             modes.push([
                 motion(mode, &place, &state, &scope)?,
@@ -86,7 +91,19 @@ impl ProblemFile {
         }
         let of_sensor = |sensor| Self::sensor_function(sensor, &state, &scope);
         let sensors = sensors.iter().map(of_sensor).collect::<Result<_, Invalid>>()?;
-        Ok(Functions { modes, sensors })
+        Ok(Functions {
+            conversions: self.conversion_functions(&scope)?,
+            modes,
+            sensors,
+        })
+    }
+
+    /// What the state of a mode is.
+    pub(super) fn space_of(&self, j: usize) -> Result<Space, Invalid> {
+        match &self.modes[j].models.state {
+            Some(state) => space(&format!("problem.modes[{j}].state"), state, &[]),
+            None => self.space(),
+        }
     }
 
     /// What the state is.
@@ -96,12 +113,6 @@ impl ProblemFile {
     /// [`Invalid`] for a name that formulas cannot use.
     pub(super) fn space(&self) -> Result<Space, Invalid> {
         space("problem.state", &self.state, &self.units)
-    }
-
-    /// Which entries of the state are angles.
-    pub(super) fn angles_of_state(&self) -> Vec<usize> {
-        let is_angle = |index: &usize| self.state[*index].kind == ComponentKind::Angle;
-        (0..self.state.len()).filter(is_angle).collect()
     }
 
     /// What a measurement by formulas or by a model is.
@@ -304,7 +315,12 @@ impl<'a> Scope<'a> {
     }
 
     /// Formulas of these components; `place` says where each stands.
-    fn bound(&self, components: &[&str], texts: &[String], place: impl Fn(usize) -> String) -> Result<Bound, Invalid> {
+    pub(super) fn bound(
+        &self,
+        components: &[&str],
+        texts: &[String],
+        place: impl Fn(usize) -> String,
+    ) -> Result<Bound, Invalid> {
         let given: Vec<&str> = self.parameters.iter().map(|(name, _)| *name).collect();
         let definitions = &self.definitions;
         let pairs: Vec<(&str, &str)> = definitions

@@ -88,6 +88,7 @@ pub mod setup;
 mod shown_as;
 mod single;
 mod single_input;
+pub mod state_conversions;
 mod steps;
 pub mod subject;
 mod symmetry;

@@ -310,6 +310,8 @@ impl JsonSchema for NoiseFile {
 /// What a mode of format 2 may have beside, or in place of, its two matrices.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ModeModels {
+    /// The components of the mode's own state, if it is another than the problem's.
+    pub state: Option<Vec<ComponentFile>>,
     /// f by formulas, one a component of the state, in place of F.
     pub formulas: Option<Vec<String>>,
     /// f by the name of a model, in place of F.
@@ -333,6 +335,14 @@ pub struct ModeModels {
 pub(super) struct ModeKeys {
     /// Its name.
     name: String,
+    /// The components of its own state, if it is another than the problem's; as many.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "if_there_at_all"
+    )]
+    #[schemars(with = "Vec<ComponentFile>")]
+    state: Option<Vec<ComponentFile>>,
     /// Transition matrix, n × n; in format 2 `f` or `motion` may stand in its place.
     #[serde(
         default,
@@ -410,6 +420,7 @@ impl TryFrom<ModeKeys> for ModeFile {
             transition: keys.transition.unwrap_or_default(),
             noise,
             models: ModeModels {
+                state: keys.state,
                 formulas: keys.formulas,
                 motion: keys.motion,
                 noise: other_noise,
@@ -427,6 +438,7 @@ impl From<ModeFile> for ModeKeys {
         let is_otherwise = mode.models.formulas.is_some() || mode.models.motion.is_some();
         Self {
             name: mode.name,
+            state: mode.models.state,
             transition: (!is_otherwise).then_some(mode.transition),
             formulas: mode.models.formulas,
             motion: mode.models.motion,

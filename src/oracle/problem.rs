@@ -8,6 +8,7 @@ pub use super::filter_file::{FAMILIES, FilterFile, FixedGainFile, MIXINGS, RULES
 use super::invalid::{Class, Invalid};
 use super::models::{ComponentFile, ModeKeys, ModeModels, ModelParameters};
 use super::single;
+use super::state_conversions::StateConversionFile;
 pub use super::steps::MeasurementAt;
 use super::trace::Dimensions;
 use super::unreadable;
@@ -54,6 +55,9 @@ pub struct ProblemFile {
     /// The modes, at least one.
     #[schemars(with = "Vec<ModeKeys>")]
     pub modes: Vec<ModeFile>,
+    /// How the modes read each other's estimates, where their states differ. Format 2.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub conversions: Vec<StateConversionFile>,
     /// What the sensor sees.
     pub measurement: MeasurementFile,
     /// Covariance of the measurement's noise, m × m.

@@ -12,6 +12,7 @@ use super::scale::scales;
 use super::subject::Precision;
 use super::trace::Trace;
 use crate::imm::Quantity;
+use crate::imm::state_conversion::Reader;
 use crate::number::RandomRounding;
 
 /// What a case is judged by.
@@ -31,8 +32,10 @@ pub struct Reference {
 pub(super) struct Turns {
     /// Of the measurement of each step.
     measured: Vec<Vec<bool>>,
-    /// Entries of the state.
-    of_state: Vec<usize>,
+    /// Entries of the state of each mode.
+    of_modes: Vec<Vec<usize>>,
+    /// Entries of the common state.
+    combined: Vec<usize>,
 }
 
 impl Turns {
@@ -48,19 +51,21 @@ impl Turns {
         };
         Self {
             measured: problem.measurements.iter().map(of_step).collect(),
-            of_state: problem.angles_of_state(),
+            of_modes: (0..problem.modes.len())
+                .map(|mode| problem.angles_of_state(Reader::Mode(mode)))
+                .collect(),
+            combined: problem.angles_of_state(Reader::Common),
         }
     }
 
     /// Whether a number of a value is one. An innovation is wrapped and is none.
-    pub(super) fn has(&self, (step, quantity, _): Place, index: usize) -> bool {
+    pub(super) fn has(&self, (step, quantity, mode): Place, index: usize) -> bool {
         match quantity {
             Quantity::PredictedMeasurement => self.measured[step - 1].get(index) == Some(&true),
-            Quantity::MixedMean
-            | Quantity::PredictedMean
-            | Quantity::CombinedPredictionMean
-            | Quantity::UpdatedMean
-            | Quantity::CombinedMean => self.of_state.contains(&index),
+            Quantity::MixedMean | Quantity::PredictedMean | Quantity::UpdatedMean => {
+                self.of_modes[mode].contains(&index)
+            }
+            Quantity::CombinedPredictionMean | Quantity::CombinedMean => self.combined.contains(&index),
             _ => false,
         }
     }

@@ -26,6 +26,8 @@ pub fn of_problems() -> Value {
     let one_motion = json!([{ "required": ["F"] }, { "required": ["f"] }, { "required": ["motion"] }]);
     schema["$defs"]["ModeFile"]["oneOf"] = one_motion.clone();
     with_short_form(&mut schema, &one_motion);
+    // So is a conversion, in one of two.
+    schema["$defs"]["StateConversionFile"]["oneOf"] = json!([{ "required": ["matrix"] }, { "required": ["formulas"] }]);
     // The key is required, and null says that there is no detection.
     schema["$defs"]["MeasurementAt"]["properties"]["z"]["type"] = json!(["array", "null"]);
     // Whether an estimate has a covariance depends on the filter.
@@ -88,7 +90,7 @@ fn of_format_1() -> Value {
         "measurements": { "items": step },
     } });
     // No value is of no type.
-    for key in ["parameters", "let", "sensors"] {
+    for key in ["parameters", "let", "conversions", "sensors"] {
         schema["properties"][key] = json!({ "enum": [] });
     }
     schema

@@ -9,6 +9,7 @@ use super::variant;
 use crate::filter::Filter;
 use crate::filter::fixed_gain::FixedGain;
 use crate::gaussian::Gaussian;
+use crate::imm::state_conversion::Reader;
 use crate::imm::{Equations, Imm, Initial, Interaction, Problem};
 use crate::model::binding::STEP;
 use crate::model::conversion::UnknownConversion;
@@ -155,9 +156,9 @@ impl ProblemFile {
             filters: self.filters(number, rule_of)?,
             interaction: match &self.filter {
                 FilterFile::FixedGain { mixing, .. } if mixing == UNMIXED => Interaction::Unmixed,
-                _ => Interaction::Imm,
+                _ => self.converted(&functions, number, interval)?,
             },
-            angles: self.angles_of_state(),
+            angles: self.angles_of_state(Reader::Common),
             chain: self.transition.iter().map(|row| list(row)).collect(),
             sensor: self.sensor(0, &functions, number, interval)?,
             measurement_noise: matrix(&self.noise, number),
@@ -215,6 +216,9 @@ impl ProblemFile {
             let interval = entry.interval.or(of_problem);
             if entry.interval.is_some() {
                 changed.modes = self.modes_in(functions, number, interval);
+                if let Interaction::Converted(_) = changed.interaction {
+                    changed.interaction = self.converted(functions, number, interval)?;
+                }
             }
             let sensor = self.sensor_of(entry).unwrap_or(0);
             changed.sensor = self.sensor(sensor, functions, number, interval)?;
@@ -399,7 +403,7 @@ static RULES: Mutex<BTreeMap<String, Option<Rule<RandomRounding, Dyn>>>> = Mutex
 const RULES_KEPT: usize = 100;
 
 /// A matrix from a list of rows.
-fn matrix<T: Real>(rows: &Rows, number: fn(f64) -> T) -> DMatrix<T> {
+pub(super) fn matrix<T: Real>(rows: &Rows, number: fn(f64) -> T) -> DMatrix<T> {
     DMatrix::from_fn(rows.len(), rows.first().map_or(0, Vec::len), |row, column| {
         number(rows[row][column])
     })

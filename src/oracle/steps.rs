@@ -155,6 +155,7 @@ impl ProblemFile {
         let of_problem = [
             ("parameters", !self.parameters.is_empty()),
             ("let", !self.definitions.is_empty()),
+            ("conversions", !self.conversions.is_empty()),
         ];
         if let Some((key, _)) = of_problem.into_iter().find(|(_, is_there)| *is_there) {
             return Some(format!("problem.{key}"));
@@ -201,7 +202,12 @@ impl ProblemFile {
         self.check_intervals()?;
         let of_modes = functions.modes.iter().flatten().flatten();
         let of_sensors = functions.sensors.iter().flatten().map(|(bound, _)| bound);
-        for bound in of_modes.chain(of_sensors).filter(|bound| bound.needs_interval()) {
+        let of_conversions = functions.conversions.iter().flatten();
+        for bound in of_modes
+            .chain(of_sensors)
+            .chain(of_conversions)
+            .filter(|bound| bound.needs_interval())
+        {
             if let Some(k) = (0..self.measurements.len()).find(|&k| self.interval(k).is_none()) {
                 let reason = format!("is missing: {} needs the length of every step", bound.place());
                 return Err(Invalid::new(
@@ -285,6 +291,7 @@ impl ProblemFile {
 fn new_key_of_mode(mode: &ModeFile) -> Option<&'static str> {
     let models = &mode.models;
     let keys = [
+        ("state", models.state.is_some()),
         ("f", models.formulas.is_some()),
         ("motion", models.motion.is_some()),
         ("Q", models.noise.is_some()),

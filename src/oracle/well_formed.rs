@@ -150,6 +150,7 @@ impl ProblemFile {
             }
         }
         check_matrix("problem.transition", &self.transition, r, r)?;
+        self.check_state_conversions()?;
         self.check_initial_shapes()
     }
 
@@ -427,8 +428,9 @@ fn of_problem(error: &InvalidProblem) -> Invalid {
         | InvalidProblem::NothingToDrawFrom
         | InvalidProblem::TwoConversions
         | InvalidProblem::NotRangeAndBearing
-        | InvalidProblem::CorrelatedNoise => Class::Unknown,
-        InvalidProblem::CovarianceGiven { .. } => Class::Format,
+        | InvalidProblem::CorrelatedNoise
+        | InvalidProblem::ConversionsOfGiven => Class::Unknown,
+        InvalidProblem::CovarianceGiven { .. } | InvalidProblem::Conversion { .. } => Class::Format,
     };
     let hint = match error {
         InvalidProblem::NotNormalised { sum, .. } if is_single(sum) => {

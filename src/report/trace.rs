@@ -5,6 +5,7 @@
 
 use super::wrapped;
 use crate::imm::Quantity;
+use crate::oracle::models::ComponentFile;
 use crate::oracle::problem::ProblemFile;
 use crate::oracle::trace::Table;
 use std::fmt::Write;
@@ -16,7 +17,7 @@ pub fn text(problem: &ProblemFile, values: &Table<Vec<String>>) -> String {
     if !problem.about.is_empty() {
         text.push_str(&wrapped(&problem.about, "  "));
     }
-    let _ = writeln!(text, "{}", state(problem));
+    let _ = writeln!(text, "{}", states(problem));
     for step in 1..=dimensions.steps() {
         let detection = match problem.measurements.get(step - 1).and_then(|entry| entry.z.as_ref()) {
             Some(z) => {
@@ -64,17 +65,27 @@ fn write_rows(text: &mut String, label: &str, numbers: &[String], columns: usize
     }
 }
 
-/// The components of the state, with their units where they have any.
-fn state(problem: &ProblemFile) -> String {
-    let names: Vec<&str> = problem.state.iter().map(|component| component.name.as_str()).collect();
-    let own = problem
-        .state
+/// The components of the state, and of each mode that has its own, with their units where they have any.
+fn states(problem: &ProblemFile) -> String {
+    let units = &problem.units;
+    let mut text = format!("state {}", state(&problem.state, units));
+    for mode in &problem.modes {
+        if let Some(own) = &mode.models.state {
+            let _ = write!(text, "\nstate of {} {}", mode.name, state(own, &[]));
+        }
+    }
+    text
+}
+
+fn state(components: &[ComponentFile], units: &[String]) -> String {
+    let names: Vec<&str> = components.iter().map(|component| component.name.as_str()).collect();
+    let own = components
         .iter()
         .map(|component| component.unit.as_deref().unwrap_or("1"));
-    let units: Vec<&str> = if problem.units.is_empty() {
+    let units: Vec<&str> = if units.is_empty() {
         own.collect()
     } else {
-        problem.units.iter().map(String::as_str).collect()
+        units.iter().map(String::as_str).collect()
     };
-    format!("state {} in {}", names.join(", "), units.join(", "))
+    format!("{} in {}", names.join(", "), units.join(", "))
 }

@@ -120,6 +120,7 @@ impl Draft {
             parameters: ModelParameters::default(),
             definitions: Vec::new(),
             modes,
+            conversions: Vec::new(),
             measurement: MeasurementFile::Linear { matrix: Vec::new() },
             noise: Vec::new(),
             sensors: Vec::new(),

@@ -7,8 +7,10 @@ use super::right::{Drawing, definition};
 use super::tree::{Given, Leaf, Of, Tree, Value};
 use super::value::{Matrix, Number, Term, With, by_rows};
 use crate::filter::Update;
-use crate::filter::extended::{measurement_jacobian, motion_jacobian};
-use crate::imm::{Problem, Quantity, Step};
+use crate::filter::extended::motion_jacobian;
+use crate::imm::equations::seen;
+use crate::imm::state_conversion::Reader;
+use crate::imm::{Interaction, Problem, Quantity, Step};
 use crate::model::Sensor;
 use crate::number::{Field, Real};
 use crate::oracle::filter_file::FilterFile;
@@ -198,7 +200,7 @@ impl<'a> Instance<'a> {
         let matrix = match given {
             Given::MotionMatrix => motion.is_linear().then(|| motion.matrix().into_owned()),
             Given::MotionNoise => Some(problem.modes[mode].noise.clone()),
-            Given::MeasurementMatrix => self.measures_by_matrix().then(|| problem.h().into_owned()),
+            Given::MeasurementMatrix => self.has_matrix().then(|| problem.h_of(mode).into_owned()),
             Given::MeasurementNoise => Some(problem.measurement_noise.clone()),
             Given::NoiseCrossCovariance => problem.filter(mode).noise_cross_covariance.clone(),
             Given::Measurement => column(self.record()?.measurement.as_ref()?.as_slice()),
@@ -217,6 +219,7 @@ impl<'a> Instance<'a> {
                 let half = turns * Number::ratio(m as i64, 2);
                 Some(DMatrix::from_element(1, 1, half))
             }
+            Given::Added => return self.added(),
             Given::One => number(1.0),
             #[allow(clippy::cast_precision_loss, reason = "n is at most some tens")]
             Given::Components => number(n as f64),
@@ -266,10 +269,18 @@ impl<'a> Instance<'a> {
         }
     }
 
-    /// Whether the measurement is a matrix.
-    pub(super) fn measures_by_matrix(&self) -> bool {
+    /// Whether the measurement has a matrix.
+    fn has_matrix(&self) -> bool {
         let problem = self.problem();
-        matches!(problem.sensor, Sensor::Linear(_)) || problem.filter(self.place.2).conversion().is_some()
+        let to_common = problem.state_conversion(self.place.2, Reader::Common);
+        to_common.is_none_or(|conversion| conversion.map.is_linear())
+            && (matches!(problem.sensor, Sensor::Linear(_)) || problem.filter(self.place.2).conversion().is_some())
+    }
+
+    /// Whether the measurement is a matrix, without an offset from the state of the mode to the common one.
+    pub(super) fn measures_by_matrix(&self) -> bool {
+        let to_common = self.problem().state_conversion(self.place.2, Reader::Common);
+        self.has_matrix() && to_common.is_none_or(|conversion| conversion.map.offset().is_none())
     }
 
     /// Whether an entry of the measurement is an angle.
@@ -299,7 +310,7 @@ impl<'a> Instance<'a> {
     }
 
     pub(super) fn measured(&self, a: &Matrix) -> Option<Matrix> {
-        Some(as_matrix(&self.problem().sensor.of(&self.state(a)?)))
+        Some(as_matrix(&seen(self.problem(), &self.state(a)?, self.place.2)))
     }
 
     pub(super) fn motion_slope(&self, a: &Matrix) -> Option<Matrix> {
@@ -310,7 +321,44 @@ impl<'a> Instance<'a> {
     }
 
     pub(super) fn measurement_slope(&self, a: &Matrix) -> Option<Matrix> {
-        Some(measurement_jacobian(&self.problem().sensor, &self.state(a)?))
+        Some(self.problem().slopes_of_measurement(self.place.2, &self.state(a)?))
+    }
+
+    /// Who reads the estimates of the modes in this value's equation.
+    pub(super) fn reader(&self) -> Reader {
+        if self.place.1.is_of_mode() {
+            Reader::Mode(self.place.2)
+        } else {
+            Reader::Common
+        }
+    }
+
+    pub(super) fn read(&self, a: &Matrix, mode: usize) -> Option<Matrix> {
+        match self.problem().state_conversion(mode, self.reader()) {
+            Some(conversion) => Some(as_matrix(&conversion.map.of(&self.state(a)?))),
+            None => Some(a.clone()),
+        }
+    }
+
+    pub(super) fn read_slope(&self, a: &Matrix, mode: usize) -> Option<Matrix> {
+        let state = self.state(a)?;
+        match self.problem().state_conversion(mode, self.reader()) {
+            Some(conversion) => Some(motion_jacobian(&conversion.map, &state)),
+            None => Some(DMatrix::identity(state.len(), state.len())),
+        }
+    }
+
+    /// Of each mode what is added to its covariance where it is read.
+    fn added(&self) -> Option<Term> {
+        let (problem, n) = (self.problem(), self.problem().n().0);
+        if !matches!(problem.interaction, Interaction::Converted(_)) {
+            return None;
+        }
+        let of_mode = |mode| match problem.state_conversion(mode, self.reader()) {
+            Some(conversion) => conversion.added.map(|entry| Number::input(entry.value())),
+            None => DMatrix::zeros(n, n),
+        };
+        Some(Term::Each((0..self.modes()).map(of_mode).collect()))
     }
 
     fn state(&self, a: &Matrix) -> Option<DVector<Number>> {

@@ -106,6 +106,8 @@ impl Operation {
             Self::Measure => "h",
             Self::MotionSlope => "f'",
             Self::MeasurementSlope => "h'",
+            Self::Read => "c",
+            Self::ReadSlope => "c'",
             _ => "outer",
         }
     }
@@ -186,6 +188,7 @@ impl Given {
             Self::Beta => "β",
             Self::Kappa => "κ",
             Self::Components => "n",
+            Self::Added => "A[i]",
             Self::One => "1",
             Self::FirstPoint => "e₀",
             Self::OtherPoints => "(1 − e₀)",

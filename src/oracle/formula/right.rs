@@ -126,6 +126,16 @@ pub(super) fn definitions(drawing: Drawing) -> &'static [Definition] {
     }
 }
 
+/// What the moments of a mixture are made of: the estimates as they stand, or, where modes have states of their own, as they are read.
+fn read_by(at: &Instance, means: Tree, covariances: Tree) -> (Tree, Tree) {
+    if !matches!(at.problem().interaction, Interaction::Converted(_)) {
+        return (means, covariances);
+    }
+    let slopes = means.clone().unary(Operation::ReadSlope);
+    let covariances = moved(&slopes, covariances, given(Given::Added));
+    (means.unary(Operation::Read), covariances)
+}
+
 /// Σ wᵢ (Pᵢ + (xᵢ − x)(xᵢ − x)ᵀ).
 fn mixture(weights: Tree, means: Tree, covariances: Tree, mean: Tree) -> Tree {
     Tree::sum(weights, covariances + (means - mean).outer())
@@ -143,7 +153,14 @@ pub(super) fn right(at: &Instance) -> Vec<Tree> {
         MixedMean, MixingProbabilities, ModeProbabilities, Nees, PredictedCovariance, PredictedMean,
         PredictedModeProbabilities, UpdatedCovariance, UpdatedMean,
     };
-    let has_headings = !at.problem().angles.is_empty();
+    let has_headings = !at.problem().angles_of(at.reader()).is_empty();
+    let before = || read_by(at, each_before(UpdatedMean), each_before(UpdatedCovariance));
+    let predicted = || read_by(at, each(PredictedMean), each(PredictedCovariance));
+    let updated = || read_by(at, each(UpdatedMean), each(UpdatedCovariance));
+    let mean = |weights: Quantity, (means, _): (Tree, Tree)| vec![Tree::sum(own(weights), means)];
+    let covariance = |weights: Quantity, (means, covariances): (Tree, Tree), about: Quantity| {
+        vec![mixture(own(weights), means, covariances, own(about))]
+    };
     match at.place.1 {
         MixedMean
         | MixedCovariance
@@ -170,27 +187,12 @@ pub(super) fn right(at: &Instance) -> Vec<Tree> {
             );
             vec![joint.unary(Operation::Normalised)]
         }
-        MixedMean => vec![Tree::sum(own(MixingProbabilities), each_before(UpdatedMean))],
-        MixedCovariance => vec![mixture(
-            own(MixingProbabilities),
-            each_before(UpdatedMean),
-            each_before(UpdatedCovariance),
-            own(MixedMean),
-        )],
-        CombinedPredictionMean => vec![Tree::sum(own(PredictedModeProbabilities), each(PredictedMean))],
-        CombinedPredictionCovariance => vec![mixture(
-            own(PredictedModeProbabilities),
-            each(PredictedMean),
-            each(PredictedCovariance),
-            own(CombinedPredictionMean),
-        )],
-        CombinedMean => vec![Tree::sum(own(ModeProbabilities), each(UpdatedMean))],
-        CombinedCovariance => vec![mixture(
-            own(ModeProbabilities),
-            each(UpdatedMean),
-            each(UpdatedCovariance),
-            own(CombinedMean),
-        )],
+        MixedMean => mean(MixingProbabilities, before()),
+        MixedCovariance => covariance(MixingProbabilities, before(), MixedMean),
+        CombinedPredictionMean => mean(PredictedModeProbabilities, predicted()),
+        CombinedPredictionCovariance => covariance(PredictedModeProbabilities, predicted(), CombinedPredictionMean),
+        CombinedMean => mean(ModeProbabilities, updated()),
+        CombinedCovariance => covariance(ModeProbabilities, updated(), CombinedMean),
         Nees => vec![squared_distance(
             given(Given::Truth) - own(CombinedMean),
             own(CombinedCovariance),

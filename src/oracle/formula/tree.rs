@@ -69,6 +69,8 @@ pub(super) enum Given {
     Beta,
     Kappa,
     Components,
+    /// A list of each mode: what is added to its covariance where its estimate is read in another state.
+    Added,
     One,
     /// One for the first point and zero for the others.
     FirstPoint,
@@ -186,6 +188,9 @@ pub(super) enum Operation {
     Measure,
     MotionSlope,
     MeasurementSlope,
+    /// c, of each mode: its state in the state of whoever reads it.
+    Read,
+    ReadSlope,
 }
 
 /// What one value can be turned into.

@@ -40,7 +40,7 @@ impl Tree {
                 let first = parts.first()?.value(at, with)?;
                 match parts.get(1) {
                     None if *operation == Operation::Stacked => first.stacked(),
-                    None => first.each(|a| operation.of_one(a, at)),
+                    None => first.each(|member, a| operation.of_one(a, at, member)),
                     Some(second) if *operation == Operation::Sum => first.weighted_sum(&second.value(at, with)?),
                     Some(second) => first.pairs(&second.value(at, with)?, |a, b| operation.of_two(a, b)),
                 }
@@ -66,10 +66,15 @@ impl Term {
         }
     }
 
-    fn each(&self, operation: impl Fn(&Matrix) -> Option<Matrix>) -> Option<Self> {
+    /// The operation knows which member of a list it is done to.
+    fn each(&self, operation: impl Fn(Option<usize>, &Matrix) -> Option<Matrix>) -> Option<Self> {
         match self {
-            Self::One(matrix) => operation(matrix).map(Self::One),
-            Self::Each(list) => list.iter().map(operation).collect::<Option<_>>().map(Self::Each),
+            Self::One(matrix) => operation(None, matrix).map(Self::One),
+            Self::Each(list) => {
+                let members = list.iter().enumerate();
+                let all = members.map(|(index, member)| operation(Some(index), member));
+                all.collect::<Option<_>>().map(Self::Each)
+            }
         }
     }
 
@@ -136,7 +141,7 @@ fn double(number: Number, function: impl Fn(f64) -> f64) -> Number {
 
 impl Operation {
     #[allow(clippy::cast_possible_truncation, reason = "single precision is what is meant")]
-    fn of_one(self, a: &Matrix, at: &Instance) -> Option<Matrix> {
+    fn of_one(self, a: &Matrix, at: &Instance, member: Option<usize>) -> Option<Matrix> {
         let (rows, columns) = a.shape();
         let is_square = rows == columns;
         Some(match self {
@@ -175,6 +180,8 @@ impl Operation {
             Self::Measure => return at.measured(a),
             Self::MotionSlope => return at.motion_slope(a),
             Self::MeasurementSlope => return at.measurement_slope(a),
+            Self::Read => return at.read(a, member?),
+            Self::ReadSlope => return at.read_slope(a, member?),
             _ => return None,
         })
     }

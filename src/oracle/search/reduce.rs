@@ -41,7 +41,11 @@ pub(super) fn modes(problem: &ProblemFile) -> Vec<ProblemFile> {
     }
     let without = |j: usize| {
         with(problem, |problem| {
-            problem.modes.remove(j);
+            let name = Some(problem.modes.remove(j).name);
+            let is_of = |end: Option<&String>| end == name.as_ref();
+            problem
+                .conversions
+                .retain(|one| !is_of(Some(&one.from)) && !is_of(one.to.as_ref()));
             problem.initial.modes.remove(j);
             remove_probability(&mut problem.initial.mode_probabilities, j);
             remove_from_chain(&mut problem.transition, j);

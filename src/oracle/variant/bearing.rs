@@ -107,7 +107,7 @@ fn mean<T: Real>(
     j: usize,
     function: OfState<T>,
 ) -> DVector<T> {
-    let centre = function(problem, &now.predicted[j].mean);
+    let centre = function(problem, &problem.in_common_state(j, &now.predicted[j].mean));
     problem
         .sensor
         .mean(weights(problem, j).0, &now.measured_points[j], &centre)
@@ -122,7 +122,7 @@ fn measured<T: Real>(
 ) -> Vec<DVector<T>> {
     now.predicted_points[j]
         .iter()
-        .map(|point| function(problem, point))
+        .map(|point| function(problem, &problem.in_common_state(j, point)))
         .collect()
 }
 

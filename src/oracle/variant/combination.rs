@@ -5,10 +5,12 @@
 use super::super::setup::Setup;
 use super::mixing::{squared, with_inner_products, without_spread};
 use super::or_initial;
-use crate::gaussian::{mixture_covariance, mixture_mean};
-use crate::imm::Step;
+use crate::gaussian::{Gaussian, mixture_covariance, mixture_mean};
+use crate::imm::state_conversion::{Reader, estimates_read};
+use crate::imm::{Problem, Step};
 use crate::number::Real;
 use nalgebra::Dyn;
+use std::borrow::Cow;
 
 /// Applies a variant of the combination; whether it is one.
 pub(super) fn apply<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
@@ -21,16 +23,18 @@ fn of_prediction<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     match id {
         // μ(k−1) for c
         "prediction-combined-with-old-probabilities" => {
-            equations.combined_prediction_mean =
-                |_, previous, now, _| mixture_mean(&previous.mode_probabilities, &now.predicted);
-            equations.combined_prediction_covariance = |_, previous, now, _| {
+            equations.combined_prediction_mean = |problem, previous, now, _| {
+                mixture_mean(&previous.mode_probabilities, &common(problem, &now.predicted))
+            };
+            equations.combined_prediction_covariance = |problem, previous, now, _| {
                 let mean = &now.combined_prediction.mean;
-                mixture_covariance(&previous.mode_probabilities, &now.predicted, mean)
+                mixture_covariance(&previous.mode_probabilities, &common(problem, &now.predicted), mean)
             };
         }
         "prediction-spread-omitted" => {
-            equations.combined_prediction_covariance =
-                |_, _, now, _| without_spread(&now.predicted_mode_probabilities, &now.predicted);
+            equations.combined_prediction_covariance = |problem, _, now, _| {
+                without_spread(&now.predicted_mode_probabilities, &common(problem, &now.predicted))
+            };
         }
         _ => return false,
     }
@@ -43,36 +47,52 @@ fn of_estimate<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     match id {
         // c for μ
         "combined-with-predicted-probabilities" => {
-            equations.combined_mean =
-                |_, _, now, _| mixture_mean(or_initial(now, &now.predicted_mode_probabilities), &now.updated);
-            equations.combined_covariance = |_, _, now, _| {
+            equations.combined_mean = |problem, _, now, _| {
                 let weights = or_initial(now, &now.predicted_mode_probabilities);
-                mixture_covariance(weights, &now.updated, &now.combined.mean)
+                mixture_mean(weights, &common(problem, &now.updated))
+            };
+            equations.combined_covariance = |problem, _, now, _| {
+                let weights = or_initial(now, &now.predicted_mode_probabilities);
+                mixture_covariance(weights, &common(problem, &now.updated), &now.combined.mean)
             };
         }
         // μ(k−1) for μ
         "combined-with-old-probabilities" => {
-            equations.combined_mean = |_, previous, now, _| mixture_mean(&previous.mode_probabilities, &now.updated);
-            equations.combined_covariance = |_, previous, now, _| {
-                mixture_covariance(&previous.mode_probabilities, &now.updated, &now.combined.mean)
+            equations.combined_mean =
+                |problem, previous, now, _| mixture_mean(&previous.mode_probabilities, &common(problem, &now.updated));
+            equations.combined_covariance = |problem, previous, now, _| {
+                let estimates = common(problem, &now.updated);
+                mixture_covariance(&previous.mode_probabilities, &estimates, &now.combined.mean)
             };
         }
         // 1/r for μ
         "combined-with-equal-weights" => {
-            equations.combined_mean = |_, _, now, _| mixture_mean(&equal(now), &now.updated);
-            equations.combined_covariance =
-                |_, _, now, _| mixture_covariance(&equal(now), &now.updated, &now.combined.mean);
+            equations.combined_mean = |problem, _, now, _| mixture_mean(&equal(now), &common(problem, &now.updated));
+            equations.combined_covariance = |problem, _, now, _| {
+                mixture_covariance(&equal(now), &common(problem, &now.updated), &now.combined.mean)
+            };
         }
         "combined-of-the-most-probable-mode" => {
-            equations.combined_mean = |_, _, now, _| now.updated[most_probable(&now.mode_probabilities)].mean.clone();
-            equations.combined_covariance =
-                |_, _, now, _| now.updated[most_probable(&now.mode_probabilities)].covariance.clone();
+            equations.combined_mean = |problem, _, now, _| {
+                let estimates = common(problem, &now.updated);
+                estimates[most_probable(&now.mode_probabilities)].mean.clone()
+            };
+            equations.combined_covariance = |problem, _, now, _| {
+                let estimates = common(problem, &now.updated);
+                estimates[most_probable(&now.mode_probabilities)].covariance.clone()
+            };
         }
         // x̂⁻, P⁻ for x̂, P
         "combined-of-predicted-estimates" => {
-            equations.combined_mean = |_, _, now, _| mixture_mean(&now.mode_probabilities, shown(now));
-            equations.combined_covariance =
-                |_, _, now, _| mixture_covariance(&now.mode_probabilities, shown(now), &now.combined.mean);
+            equations.combined_mean =
+                |problem, _, now, _| mixture_mean(&now.mode_probabilities, &common(problem, shown(now)));
+            equations.combined_covariance = |problem, _, now, _| {
+                mixture_covariance(
+                    &now.mode_probabilities,
+                    &common(problem, shown(now)),
+                    &now.combined.mean,
+                )
+            };
         }
         _ => return false,
     }
@@ -84,25 +104,35 @@ fn of_covariance<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let entry = &mut setup.equations.combined_covariance;
     match id {
         // Σⱼ μⱼ Pʲ
-        "combined-spread-omitted" => *entry = |_, _, now, _| without_spread(&now.mode_probabilities, &now.updated),
+        "combined-spread-omitted" => {
+            *entry = |problem, _, now, _| without_spread(&now.mode_probabilities, &common(problem, &now.updated));
+        }
         // Σⱼ μⱼ² · [ … ]
         "combined-covariance-weights-squared" => {
-            *entry =
-                |_, _, now, _| mixture_covariance(&squared(&now.mode_probabilities), &now.updated, &now.combined.mean);
+            *entry = |problem, _, now, _| {
+                let weights = squared(&now.mode_probabilities);
+                mixture_covariance(&weights, &common(problem, &now.updated), &now.combined.mean)
+            };
         }
         // the scalar (x̂ʲ − x̂)ᵀ(x̂ʲ − x̂) added to every entry
         "combined-spread-inner-product" => {
-            *entry = |_, _, now, _| with_inner_products(&now.mode_probabilities, &now.updated, &now.combined.mean);
+            *entry = |problem, _, now, _| {
+                with_inner_products(
+                    &now.mode_probabilities,
+                    &common(problem, &now.updated),
+                    &now.combined.mean,
+                )
+            };
         }
         // x̂ʲ − x̂⁻ of all modes
         "combined-spread-about-prediction" => {
-            *entry = |_, _, now, _| {
+            *entry = |problem, _, now, _| {
                 let mean = if now.step == 0 {
                     &now.combined.mean
                 } else {
                     &now.combined_prediction.mean
                 };
-                mixture_covariance(&now.mode_probabilities, &now.updated, mean)
+                mixture_covariance(&now.mode_probabilities, &common(problem, &now.updated), mean)
             }
         }
         _ => return false,
@@ -110,8 +140,16 @@ fn of_covariance<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     true
 }
 
+/// Estimates of all modes in the common state.
+fn common<'a, T: Real>(
+    problem: &Problem<T, Dyn, Dyn>,
+    estimates: &'a [Gaussian<T, Dyn>],
+) -> Cow<'a, [Gaussian<T, Dyn>]> {
+    estimates_read(problem, estimates, Reader::Common)
+}
+
 /// The predicted estimates; at step 0 the initial ones.
-fn shown<T: Real>(now: &Step<T, Dyn, Dyn>) -> &[crate::gaussian::Gaussian<T, Dyn>] {
+fn shown<T: Real>(now: &Step<T, Dyn, Dyn>) -> &[Gaussian<T, Dyn>] {
     if now.step == 0 { &now.updated } else { &now.predicted }
 }
 

@@ -10,7 +10,8 @@ use super::{
 use crate::filter::{cubature, kalman};
 use crate::gaussian::{Gaussian, mixture_covariance, mixture_mean};
 use crate::imm::Equations;
-use crate::imm::angles::{estimates_near, points_near, wrapped};
+use crate::imm::angles::{estimates_near, estimates_near_first, points_near, wrapped};
+use crate::imm::state_conversion::Reader;
 use crate::imm::{Problem, Step};
 use crate::matrix::{check_positive_definite, cholesky, ldl, mirrored, solve};
 use crate::number::Real;
@@ -40,7 +41,7 @@ fn of_mean<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
             let mean = &now.predicted[j].mean;
             let measurement = &now.innovations[j] + &h * mean;
             let updated = inverse(&(&before + &of_measurement * &h)) * (before * mean + of_measurement * measurement);
-            wrapped(&problem.angles, updated)
+            wrapped(problem.angles_of(Reader::Mode(j)), updated)
         };
     }
     true
@@ -178,14 +179,14 @@ fn of_moments<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
         "mixture-by-raw-moments" => {
             equations.mixed_covariance = |problem, previous, now, j| {
                 let mean = &now.mixed[j].mean;
-                let estimates = estimates_near(problem, &previous.updated, mean);
+                let estimates = estimates_near(problem, &previous.updated, Reader::Mode(j), mean);
                 raw_mixture(&now.mixing_probabilities[j], &estimates, mean)
             };
             equations.combined_covariance = |problem, _, now, _| {
                 let mean = &now.combined.mean;
                 raw_mixture(
                     &now.mode_probabilities,
-                    &estimates_near(problem, &now.updated, mean),
+                    &estimates_near(problem, &now.updated, Reader::Common, mean),
                     mean,
                 )
             };
@@ -193,21 +194,21 @@ fn of_moments<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
         // the last term first
         "summation-reversed" => {
             equations.mixed_mean = |problem, previous, now, j| {
-                let estimates = estimates_near(problem, &previous.updated, &previous.updated[0].mean);
+                let estimates = estimates_near_first(problem, &previous.updated, Reader::Mode(j));
                 mixture_mean(&reversed(&now.mixing_probabilities[j]), &reversed(&estimates))
             };
             equations.mixed_covariance = |problem, previous, now, j| {
                 let mean = &now.mixed[j].mean;
-                let estimates = estimates_near(problem, &previous.updated, mean);
+                let estimates = estimates_near(problem, &previous.updated, Reader::Mode(j), mean);
                 mixture_covariance(&reversed(&now.mixing_probabilities[j]), &reversed(&estimates), mean)
             };
             equations.combined_mean = |problem, _, now, _| {
-                let estimates = estimates_near(problem, &now.updated, &now.updated[0].mean);
+                let estimates = estimates_near_first(problem, &now.updated, Reader::Common);
                 mixture_mean(&reversed(&now.mode_probabilities), &reversed(&estimates))
             };
             equations.combined_covariance = |problem, _, now, _| {
                 let mean = &now.combined.mean;
-                let estimates = estimates_near(problem, &now.updated, mean);
+                let estimates = estimates_near(problem, &now.updated, Reader::Common, mean);
                 mixture_covariance(&reversed(&now.mode_probabilities), &reversed(&estimates), mean)
             };
             if points {
@@ -276,12 +277,12 @@ fn of_probability<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
 fn reverse_points<T: Real>(equations: &mut Equations<T, Dyn, Dyn>) {
     equations.predicted_mean = |problem, _, now, j| {
         let centre = problem.modes[j].motion.of(&now.mixed[j].mean);
-        let points = points_near(problem, &now.propagated_points[j], &centre);
+        let points = points_near(problem, j, &now.propagated_points[j], &centre);
         cubature::weighted_mean(&reversed(weights(problem, j).0), &reversed(&points))
     };
     equations.predicted_covariance = |problem, _, now, j| {
         let mean = &now.predicted[j].mean;
-        let points = points_near(problem, &now.propagated_points[j], mean);
+        let points = points_near(problem, j, &now.propagated_points[j], mean);
         let weights = reversed(weights(problem, j).1);
         cubature::weighted_covariance(&weights, &reversed(&points), mean, &problem.modes[j].noise)
     };

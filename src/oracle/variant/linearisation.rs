@@ -5,7 +5,7 @@
 
 use super::super::setup::Setup;
 use crate::filter::Transform;
-use crate::filter::extended::{measurement_jacobian, motion_jacobian};
+use crate::filter::extended::motion_jacobian;
 use crate::imm::{Equations, Problem, Step};
 use crate::number::Real;
 use nalgebra::{DMatrix, DVector, Dyn};
@@ -117,7 +117,7 @@ fn motion_slopes<T: Real>(problem: &Problem<T, Dyn, Dyn>, j: usize, at: &DVector
 /// The Jacobian of the measurement for mode j; none where its filter does not linearise.
 fn measurement_slopes<T: Real>(problem: &Problem<T, Dyn, Dyn>, j: usize, at: &DVector<T>) -> Option<DMatrix<T>> {
     let is_linearised = problem.filter(j).linearises_the_measurement();
-    is_linearised.then(|| measurement_jacobian(&problem.sensor, at))
+    is_linearised.then(|| problem.slopes_of_measurement(j, at))
 }
 
 /// The Jacobian of the step before, if it has the shape of `own`.

@@ -7,9 +7,11 @@ use crate::filter::extended::motion_jacobian;
 use crate::filter::kalman;
 use crate::gaussian::{Gaussian, mixture_covariance, mixture_mean};
 use crate::imm::probability::{mixing_probability, predicted_mode_probability};
+use crate::imm::state_conversion::{Reader, estimates_read};
 use crate::imm::{Problem, Step};
 use crate::number::Real;
 use nalgebra::{DMatrix, Dyn};
+use std::borrow::Cow;
 
 /// Applies a variant of the mixing; whether it is one.
 pub(super) fn apply<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
@@ -109,20 +111,20 @@ fn of_mixed_estimate<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
         // x̂⁰ʲ = Σᵢ μⱼ∣ᵢ x̂ⁱ
         "mixed-with-transposed-probabilities" => {
             equations.mixed_mean =
-                |problem, previous, _, j| mixture_mean(&swapped(problem, previous, j), &previous.updated);
+                |problem, previous, _, j| mixture_mean(&swapped(problem, previous, j), &read(problem, previous, j));
             equations.mixed_covariance = |problem, previous, now, j| {
                 let mean = &now.mixed[j].mean;
-                mixture_covariance(&swapped(problem, previous, j), &previous.updated, mean)
+                mixture_covariance(&swapped(problem, previous, j), &read(problem, previous, j), mean)
             };
         }
         // what was mixed for the modes before j stands in the place of their estimates
         "mixing-in-place" => {
-            equations.mixed_mean = |_, previous, now, j| {
-                let estimates = overwritten(previous, now, j);
+            equations.mixed_mean = |problem, previous, now, j| {
+                let estimates = overwritten(problem, previous, now, j);
                 mixture_mean(&now.mixing_probabilities[j], &estimates)
             };
-            equations.mixed_covariance = |_, previous, now, j| {
-                let estimates = overwritten(previous, now, j);
+            equations.mixed_covariance = |problem, previous, now, j| {
+                let estimates = overwritten(problem, previous, now, j);
                 mixture_covariance(&now.mixing_probabilities[j], &estimates, &now.mixed[j].mean)
             };
         }
@@ -131,9 +133,9 @@ fn of_mixed_estimate<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
             equations.mixed_mean = |_, previous, _, j| previous.updated[j].mean.clone();
             equations.mixed_covariance = |_, previous, _, j| previous.updated[j].covariance.clone();
             equations.predicted_mean =
-                |problem, _, now, j| mixture_mean(&now.mixing_probabilities[j], &own_predictions(problem, now));
+                |problem, _, now, j| mixture_mean(&now.mixing_probabilities[j], &own_predictions(problem, now, j));
             equations.predicted_covariance = |problem, _, now, j| {
-                let predictions = own_predictions(problem, now);
+                let predictions = own_predictions(problem, now, j);
                 mixture_covariance(&now.mixing_probabilities[j], &predictions, &now.predicted[j].mean)
             };
         }
@@ -148,19 +150,21 @@ fn of_mixed_covariance<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     match id {
         // P⁰ʲ = Σᵢ μᵢ∣ⱼ Pⁱ
         "mixed-spread-omitted" => {
-            *entry = |_, previous, now, j| without_spread(&now.mixing_probabilities[j], &previous.updated);
+            *entry =
+                |problem, previous, now, j| without_spread(&now.mixing_probabilities[j], &read(problem, previous, j));
         }
         // x̂ⁱ − x̂
         "mixed-spread-about-combined-mean" => {
-            *entry = |_, previous, now, j| {
-                mixture_covariance(&now.mixing_probabilities[j], &previous.updated, &previous.combined.mean)
+            *entry = |problem, previous, now, j| {
+                let mean = &previous.combined.mean;
+                mixture_covariance(&now.mixing_probabilities[j], &read(problem, previous, j), mean)
             }
         }
         // x̂ⁱ − x̂ʲ
         "mixed-spread-about-own-mean" => {
-            *entry = |_, previous, now, j| {
+            *entry = |problem, previous, now, j| {
                 let own = &previous.updated[j].mean;
-                mixture_covariance(&now.mixing_probabilities[j], &previous.updated, own)
+                mixture_covariance(&now.mixing_probabilities[j], &read(problem, previous, j), own)
             }
         }
         // x̂ⁱ − x̂⁰ⁱ
@@ -168,11 +172,12 @@ fn of_mixed_covariance<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
             *entry = |problem, previous, now, j| {
                 let n = problem.n().0;
                 let mut sum = DMatrix::zeros(n, n);
-                for (i, estimate) in previous.updated.iter().enumerate() {
+                let estimates = read(problem, previous, j);
+                for (i, estimate) in estimates.iter().enumerate() {
                     let weights: Vec<T> = (0..problem.modes.len())
                         .map(|l| mixing(problem, previous, l, i))
                         .collect();
-                    let mean = mixture_mean(&weights, &previous.updated);
+                    let mean = mixture_mean(&weights, &estimates);
                     let one = std::slice::from_ref(estimate);
                     sum += mixture_covariance(&now.mixing_probabilities[j][i..=i], one, &mean);
                 }
@@ -183,16 +188,16 @@ fn of_mixed_covariance<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
         "covariances-not-mixed" => *entry = |_, previous, _, j| previous.updated[j].covariance.clone(),
         // Σᵢ μᵢ∣ⱼ² · [ … ]
         "mixed-covariance-weights-squared" => {
-            *entry = |_, previous, now, j| {
+            *entry = |problem, previous, now, j| {
                 let weights = squared(&now.mixing_probabilities[j]);
-                mixture_covariance(&weights, &previous.updated, &now.mixed[j].mean)
+                mixture_covariance(&weights, &read(problem, previous, j), &now.mixed[j].mean)
             }
         }
         // the scalar (x̂ⁱ − x̂⁰ʲ)ᵀ(x̂ⁱ − x̂⁰ʲ) added to every entry
         "mixed-spread-inner-product" => {
-            *entry = |_, previous, now, j| {
+            *entry = |problem, previous, now, j| {
                 let (weights, mean) = (&now.mixing_probabilities[j], &now.mixed[j].mean);
-                with_inner_products(weights, &previous.updated, mean)
+                with_inner_products(weights, &read(problem, previous, j), mean)
             }
         }
         _ => return false,
@@ -217,20 +222,38 @@ fn swapped<T: Real>(problem: &Problem<T, Dyn, Dyn>, previous: &Step<T, Dyn, Dyn>
     each(problem, |i| mixing(problem, previous, j, i))
 }
 
+/// The estimates of the step before, as mode j reads them.
+pub(super) fn read<'a, T: Real>(
+    problem: &Problem<T, Dyn, Dyn>,
+    previous: &'a Step<T, Dyn, Dyn>,
+    j: usize,
+) -> Cow<'a, [Gaussian<T, Dyn>]> {
+    estimates_read(problem, &previous.updated, Reader::Mode(j))
+}
+
 /// One number for each previous mode i.
 fn each<T: Real>(problem: &Problem<T, Dyn, Dyn>, of: impl Fn(usize) -> T) -> Vec<T> {
     (0..problem.modes.len()).map(of).collect()
 }
 
-/// The updated estimates of the step before, those of modes below j overwritten by the mixed ones.
-fn overwritten<T: Real>(previous: &Step<T, Dyn, Dyn>, now: &Step<T, Dyn, Dyn>, j: usize) -> Vec<Gaussian<T, Dyn>> {
+/// The updated estimates of the step before, those of modes below j overwritten by the mixed ones, as mode j reads them.
+fn overwritten<T: Real>(
+    problem: &Problem<T, Dyn, Dyn>,
+    previous: &Step<T, Dyn, Dyn>,
+    now: &Step<T, Dyn, Dyn>,
+    j: usize,
+) -> Vec<Gaussian<T, Dyn>> {
     let mut estimates = previous.updated.clone();
     estimates[..j].clone_from_slice(&now.mixed[..j]);
-    estimates
+    estimates_read(problem, &estimates, Reader::Mode(j)).into_owned()
 }
 
-/// The predictions of the estimates from which the modes start.
-fn own_predictions<T: Real>(problem: &Problem<T, Dyn, Dyn>, now: &Step<T, Dyn, Dyn>) -> Vec<Gaussian<T, Dyn>> {
+/// The predictions of the estimates from which the modes start, as mode j reads them.
+fn own_predictions<T: Real>(
+    problem: &Problem<T, Dyn, Dyn>,
+    now: &Step<T, Dyn, Dyn>,
+    j: usize,
+) -> Vec<Gaussian<T, Dyn>> {
     let modes = problem.modes.iter().zip(&now.mixed);
     let predictions = modes.map(|(mode, start)| Gaussian {
         mean: mode.motion.of(&start.mean),
@@ -240,7 +263,8 @@ fn own_predictions<T: Real>(problem: &Problem<T, Dyn, Dyn>, now: &Step<T, Dyn, D
             &mode.noise,
         ),
     });
-    predictions.collect()
+    let predictions: Vec<Gaussian<T, Dyn>> = predictions.collect();
+    estimates_read(problem, &predictions, Reader::Mode(j)).into_owned()
 }
 
 /// Σᵢ wᵢ Pⁱ.

@@ -53,7 +53,8 @@ use super::setup::Setup;
 use crate::filter::{Filter, Transform, Update, cubature};
 use crate::gaussian::Gaussian;
 use crate::imm::equations::{Factored, difference, measurement_matrix, motion_matrix, noise, seen, used};
-use crate::imm::{Needs, Problem, Quantity, Step};
+use crate::imm::state_conversion::Reader;
+use crate::imm::{Interaction, Needs, Problem, Quantity, Step};
 use crate::model::{PolarComponent, Sensor};
 use crate::number::Real;
 use crate::rule::Rule;
@@ -186,7 +187,11 @@ impl Applies {
                 let converts = |filter: &Filter<T, Dyn, Dyn>| matches!(filter.update, Update::Converted(_));
                 !problem.filters.iter().all(converts) && setup.problems().any(has_angle)
             }
-            Self::StateAngles => !problem.angles.is_empty(),
+            Self::StateAngles => {
+                let of_modes = (0..problem.modes.len()).map(Reader::Mode);
+                let mut readers = of_modes.chain([Reader::Common]);
+                readers.any(|reader| !problem.angles_of(reader).is_empty())
+            }
             Self::Bearings => {
                 let is_bearing =
                     |sensor: &Sensor<T, Dyn, Dyn>, row| sensor.reports(row) == Some(PolarComponent::Bearing);
@@ -247,13 +252,35 @@ impl Variant {
     /// Whether it can make a difference here. Where it cannot, the variant leaves every value as it is.
     pub fn applies_to<T: Real>(&self, setup: &Setup<T>) -> bool {
         let exists = setup.problem.has_covariances() || !self.needs_covariances();
-        exists && self.applies.to(setup)
+        exists && !(self.needs_one_state() && has_state_conversions(setup)) && self.applies.to(setup)
+    }
+
+    /// Whether it has no meaning where modes have states of their own: it takes the combined estimate for one of a mode, and nothing
+    /// converts it; or it asks what a mode lacks of another's state, and a conversion says that.
+    fn needs_one_state(&self) -> bool {
+        OF_ONE_STATE.contains(&self.id.as_str())
     }
 
     /// Whether it has no meaning where there are no covariances.
     fn needs_covariances(&self) -> bool {
         matches!(self.applies, Applies::Kalman | Applies::Covariances) || self.quantity.needs(Needs::Covariances)
     }
+}
+
+/// The variants that need all modes to have one state.
+const OF_ONE_STATE: [&str; 7] = [
+    "common-mixing",
+    "mixed-spread-about-combined-mean",
+    "prediction-of-combined-covariance",
+    "measurement-of-the-combined-prediction",
+    "update-of-the-combined-prediction",
+    "unequal-dimensions-index-wise",
+    "unequal-dimensions-unbiased",
+];
+
+/// Whether modes have states of their own.
+fn has_state_conversions<T: Real>(setup: &Setup<T>) -> bool {
+    matches!(setup.problem.interaction, Interaction::Converted(_))
 }
 
 /// A quantity by its name.
@@ -305,12 +332,14 @@ pub fn find(id: &str) -> Option<&'static Variant> {
 }
 
 /// Makes a run one of a variant; whether there is one of this name. Several may be applied, one after the other. What has no meaning
-/// without covariances leaves filters that carry none as they are, and what is of several modes leaves one mode alone.
+/// without covariances leaves filters that carry none as they are, what is of several modes leaves one mode alone, and what needs one
+/// state leaves modes with states of their own as they are.
 pub fn apply<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let has_no_meaning = |variant: &Variant| {
         let is_of_modes = variant.applies == Applies::SeveralModes;
         (is_of_modes && setup.problem.modes.len() == 1)
             || (variant.needs_covariances() && !setup.problem.has_covariances())
+            || (variant.needs_one_state() && has_state_conversions(setup))
     };
     if find(id).is_some_and(has_no_meaning) {
         return true;

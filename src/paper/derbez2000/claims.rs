@@ -114,7 +114,7 @@ fn add_contestants(scenario: &mut CoordinateScenario) {
     };
     name.clone_into(&mut other.name);
     for problem in &mut other.problems {
-        problem.interaction = interaction;
+        problem.interaction = interaction.clone();
     }
     let without_spread = CoordinateFilters {
         name: "without spread".to_owned(),
