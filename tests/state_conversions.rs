@@ -2,23 +2,30 @@
 //!
 //! Method: one problem in two coordinate systems must have the same certified digits; identity conversions are no conversions, to the bit;
 //! a sensor that is composed by hand sees what the filter composes; Jacobians are difference quotients; a turned scene has the turned
-//! answer wherever its heading is cut; and what is wrong with a conversion is said in a sentence.
+//! answer wherever its heading is cut; what is forgotten of a conversion is told by name, and what is wrong with one in a sentence.
 
 use immaculate::filter::Filter;
+use immaculate::filter::extended::motion_jacobian;
 use immaculate::filter::kalman::{predicted_covariance, predicted_mean};
 use immaculate::gaussian::{Gaussian, mixture_covariance, mixture_mean};
 use immaculate::imm::state_conversion::{Reader, StateConversion, StateConversions, converted_estimate};
-use immaculate::imm::{Imm, Initial, Interaction, Problem, Step};
+use immaculate::imm::{Imm, Initial, Interaction, Problem, Quantity, Step};
 use immaculate::matrix::{Holds, Shapes};
 use immaculate::model::Sensor;
 use immaculate::model::function::Function;
 use immaculate::model::motion::{Mode, Motion};
 use immaculate::model::space::{Component, Space};
 use immaculate::number::{Field, Rational};
+use immaculate::oracle::case;
 use immaculate::oracle::certify::certify;
+use immaculate::oracle::check::check_problems;
+use immaculate::oracle::diagnose::Diagnosis;
 use immaculate::oracle::problem::ProblemFile;
+use immaculate::oracle::subject::{Answer, Broken, Level, Planted, Ready, Subject};
 use immaculate::rule::RuleName;
-use nalgebra::{DimName, Matrix4, Matrix5, OMatrix, OVector, U2, U3, U4, U5, Vector4, Vector5, matrix, vector};
+use nalgebra::{
+    DMatrix, DimName, Matrix4, Matrix5, OMatrix, OVector, U2, U3, U4, U5, Vector4, Vector5, matrix, vector,
+};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
 
@@ -435,6 +442,93 @@ fn the_slopes_of_a_converted_measurement_are_its_difference_quotients() {
     assert!(
         coarse > 1e-8 && (3.9..4.1).contains(&(coarse / fine)),
         "{coarse:e} {fine:e}"
+    );
+}
+
+// -------------------------------------------------------------------------------------------------------------------- the judge
+
+fn published(id: &str) -> ProblemFile {
+    let case = case::all().unwrap().iter().find(|case| case.problem.id == id).unwrap();
+    ProblemFile {
+        id: "mine".into(),
+        ..case.problem.clone()
+    }
+}
+
+#[test]
+fn what_is_forgotten_of_a_conversion_is_named() {
+    let mistakes = [
+        ("states-mixed-unconverted", Quantity::MixedMean),
+        ("states-combined-unconverted", Quantity::CombinedMean),
+        ("state-conversion-jacobian-omitted", Quantity::MixedCovariance),
+        ("state-conversion-covariance-not-added", Quantity::MixedCovariance),
+    ];
+    for id in ["states.extended", "states.cubature-3", "states.kalman"] {
+        let judged = |variants: &[&str]| {
+            let variants = variants.iter().map(|&id| id.to_owned()).collect();
+            let level = Level::Everything;
+            check_problems(&mut Planted { variants, level }, &[published(id)], &|_| {}).unwrap()
+        };
+        let right = judged(&[]);
+        assert!(!right.is_wrong(), "{id}");
+        assert_eq!(right.cases[0].judged, right.cases[0].of, "{id}");
+        for (variant, quantity) in mistakes {
+            let report = judged(&[variant]);
+            let first = report.faults().map(|(_, judged)| judged.place.1).min();
+            assert_eq!(first, Some(quantity), "{variant} in {id}");
+            let Diagnosis::One(variants) = &report.diagnosis else {
+                panic!("{variant} in {id}: {:?}", report.diagnosis)
+            };
+            assert_eq!(variants[0].id, variant, "{id}");
+        }
+    }
+}
+
+/// A program that reads an estimate by C P C + A.
+struct Untransposed;
+
+impl Subject for Untransposed {
+    fn start(&mut self) -> Result<Ready, Broken> {
+        Ok(Ready::default())
+    }
+
+    fn run(&mut self, problem: &ProblemFile) -> Answer {
+        let mut setup = problem.setup_in_doubles().unwrap();
+        setup.equations.mixed_covariance = |problem, previous, now, j| {
+            let mut covariance = DMatrix::zeros(problem.n().0, problem.n().0);
+            for (i, estimate) in previous.updated.iter().enumerate() {
+                let (mut mean, mut p) = (estimate.mean.clone(), estimate.covariance.clone());
+                if let Some(conversion) = problem.state_conversion(i, Reader::Mode(j)) {
+                    let slopes = motion_jacobian(&conversion.map, &mean);
+                    p = &slopes * p * &slopes + &conversion.added;
+                    mean = conversion.map.of(&mean);
+                }
+                let away = mean - &now.mixed[j].mean;
+                covariance += (p + &away * away.transpose()) * now.mixing_probabilities[j][i];
+            }
+            covariance
+        };
+        let computed = setup.run();
+        Answer::Steps {
+            error: computed.failures.first().map(ToString::to_string),
+            trace: computed.in_doubles(),
+        }
+    }
+}
+
+#[test]
+fn a_conversion_that_has_no_name_is_found_as_a_formula() {
+    let report = check_problems(&mut Untransposed, &[published("states.kalman")], &|_| {}).unwrap();
+    let Diagnosis::InParts { formulas, .. } = &report.diagnosis else {
+        panic!("{:?}", report.diagnosis)
+    };
+    let [found] = &formulas.found[..] else {
+        panic!("{formulas:?}")
+    };
+    assert_eq!(
+        found.computed,
+        "Σᵢ mixing_probabilities·(c'(previous updated.mean[i]) · previous updated.covariance[i] · c'(previous updated.mean[i]) + A[i] + \
+         outer(c(previous updated.mean[i]) − mixed.mean))"
     );
 }
 

@@ -9,6 +9,7 @@
 use immaculate::filter::fixed_gain::FixedGain;
 use immaculate::filter::{Filter, Update};
 use immaculate::gaussian::Gaussian;
+use immaculate::imm::state_conversion::{Reader, StateConversion, StateConversions};
 use immaculate::imm::{Equations, Initial, Interaction, Problem, Quantity};
 use immaculate::model::function::Function;
 use immaculate::model::motion::{Mode, Motion};
@@ -76,6 +77,11 @@ fn steps_that_differ_are_their_formulas() {
 #[test]
 fn headings_are_averaged_by_their_formulas() {
     holds(&heading(), 2, HEADINGS);
+}
+
+#[test]
+fn states_are_converted_by_their_formulas() {
+    holds(&separate(), 2, STATES);
 }
 
 #[test]
@@ -585,6 +591,43 @@ const HEADINGS: &[Row] = &[
         let sum = |of: fn(f64) -> f64| (0..3).map(|i| at.mix(j, i) * of(at.xb(i)[1])).sum::<f64>();
         vec![mixed_as_numbers(at, j)[0], sum(f64::sin).atan2(sum(f64::cos))]
     }),
+];
+
+/// c of mode i for mode j, and its slopes: the second mode reads the others along a curve, and is read by them along a line.
+fn read(at: At, i: usize, j: usize) -> (Vector2<f64>, Matrix2<f64>) {
+    let x = at.xb(i);
+    match (i, j) {
+        (1, 0 | 2) => (BACK * x, BACK),
+        (0 | 2, 1) => (
+            vector![x[0] + 0.02 * x[1] * x[1], 1.2 * x[1] - 0.1 * x[0]],
+            matrix![1.0, 0.04 * x[1]; -0.1, 1.2],
+        ),
+        _ => (x, Matrix2::identity()),
+    }
+}
+
+/// A of mode i for mode j.
+fn added(i: usize, j: usize) -> Matrix2<f64> {
+    if (i, j) == (0, 1) { ADDED } else { Matrix2::zeros() }
+}
+
+const BACK: Matrix2<f64> = Matrix2::new(0.8, 0.3, -0.2, 0.9);
+const ADDED: Matrix2<f64> = Matrix2::new(0.7, 0.2, 0.2, 0.5);
+
+#[rustfmt::skip]
+const STATES: &[Row] = &[
+    ("states-mixed-unconverted", Q::MixedMean, |a, j| rows(sum(|i| a.xb(i) * a.mix(j, i)))),
+    ("states-mixed-unconverted", Q::MixedCovariance, |a, j| of_before(a, |i| a.mix(j, i), a.x0(j))),
+    ("states-combined-unconverted", Q::CombinedMean, |a, _| rows(sum(|j| a.x(j) * a.mun(j)))),
+    ("states-combined-unconverted", Q::CombinedCovariance, |a, _| of_updated(a, |j| a.mun(j), a.xc())),
+    ("state-conversion-jacobian-omitted", Q::MixedCovariance, |a, j| rows(sum(|i| {
+        let (x, _) = read(a, i, j);
+        (a.pb(i) + added(i, j) + square(x - a.x0(j))) * a.mix(j, i)
+    }))),
+    ("state-conversion-covariance-not-added", Q::MixedCovariance, |a, j| rows(sum(|i| {
+        let (x, c) = read(a, i, j);
+        (c * a.pb(i) * c.transpose() + square(x - a.x0(j))) * a.mix(j, i)
+    }))),
 ];
 
 const THIRD: f64 = 1.0 / 3.0;
@@ -1432,6 +1475,35 @@ fn heading() -> Scene {
     for (estimate, heading) in scene.initial.modes.iter_mut().zip([2.9, -2.2, 2.8]) {
         estimate.mean[1] = heading;
     }
+    scene
+}
+
+/// The second mode has a state of its own.
+fn separate() -> Scene {
+    let mut scene = kalman();
+    let dynamic = |matrix: Matrix2<f64>| dmatrix![matrix.m11, matrix.m12; matrix.m21, matrix.m22];
+    let curve = [("a", "a + 0.02*b*b"), ("b", "1.2*b - 0.1*a")];
+    let function = Function::of_formulas(&["a", "b"], &[], &[], &[], &curve).unwrap();
+    let along_the_curve = || Motion::Function {
+        function: function.clone().into(),
+        given: Vec::new(),
+    };
+    let along_the_line = || Motion::Linear(dynamic(BACK));
+    let conversion = |from, to, map, added| StateConversion {
+        from,
+        to,
+        map,
+        added: dynamic(added),
+    };
+    let list = vec![
+        conversion(0, Reader::Mode(1), along_the_curve(), ADDED),
+        conversion(2, Reader::Mode(1), along_the_curve(), Matrix2::zeros()),
+        conversion(1, Reader::Mode(0), along_the_line(), Matrix2::zeros()),
+        conversion(1, Reader::Mode(2), along_the_line(), Matrix2::zeros()),
+        conversion(1, Reader::Common, along_the_line(), Matrix2::zeros()),
+    ];
+    let angles = vec![vec![]; 3];
+    scene.problem.interaction = Interaction::Converted(StateConversions { list, angles });
     scene
 }
 

@@ -230,6 +230,8 @@ fn where_a_variant_applies_is_what_its_word_says() {
         expected(&[&["points", "covariances", "angles", "bearings"]])
     );
     assert_eq!(of(&fixed(Interaction::Imm)), expected(&[&["fixed gains"]]));
+    let separate = separate_states(Filter::kalman());
+    assert_eq!(of(&separate), expected(&[&kalman, &["state conversions"]]));
     let of_converted = expected(&[&kalman, &dimensions, &["conversions", "bearings"]]);
     assert_eq!(of(&converted(Conversion::Standard)), of_converted);
     let mut one = linear(1);

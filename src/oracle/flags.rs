@@ -3,7 +3,7 @@
 //! After this file the reader knows every word by which cases are marked and chosen, and what a problem with it is like.
 
 /// Every flag, and what a problem with it is like.
-pub const FLAGS: [(&str, &str); 55] = [
+pub const FLAGS: [(&str, &str); 56] = [
     (
         "single-equation",
         "All is trivial but one equation, or one group of them.",
@@ -123,6 +123,10 @@ pub const FLAGS: [(&str, &str); 55] = [
     (
         "state-angle",
         "An entry of the state is an angle, and estimates lie on both sides of its cut at pi.",
+    ),
+    (
+        "states",
+        "Modes have states of their own, and conversions say how they read each other.",
     ),
     (
         "missing-entry",

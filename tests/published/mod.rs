@@ -11,6 +11,7 @@
 //! - `converted`: filters that convert their measurements, modes of unequal dimensions, and the scenario of the paper that has both;
 //! - `fixed_gain`: filters whose gains are given, and the scenario of the paper that has them;
 //! - `extended`: extended filters, several sensors, and steps that differ;
+//! - `states`: modes with states of their own, and the conversions between them;
 //! - `partial`: measurements of which an entry is missing, and what is exact in a direction;
 //! - `behaviours`: for each kind of filter what it has in none of the others;
 //! - `consistency`: the squares by which a filter is called consistent;
@@ -40,6 +41,7 @@ mod rules;
 mod runs;
 mod scene;
 mod seen;
+mod states;
 mod steps;
 pub mod write;
 
@@ -67,6 +69,7 @@ pub fn all() -> Vec<ProblemFile> {
         iterated::all(),
         pairs::all(),
         seen::all(),
+        states::all(),
     ]
     .concat()
 }

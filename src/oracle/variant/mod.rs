@@ -22,6 +22,7 @@
 //! | `combination`   | combined estimates                                                   |
 //! | `convention`    | choices that the papers leave open                                   |
 //! | `state_angle`   | angles in the state                                                  |
+//! | `state`         | how modes with states of their own read each other                   |
 //! | `square_root`   | of these the square root of a covariance                             |
 //! | `fixed_gain`    | what is given to filters with fixed gains, and their two readings    |
 //! | `form`          | other algebra for the same exact value                               |
@@ -45,6 +46,7 @@ mod points;
 mod prediction;
 mod probability;
 mod square_root;
+mod state;
 mod state_angle;
 mod step;
 mod update;
@@ -123,6 +125,9 @@ pub enum Applies {
     /// Where an entry of the state is an angle.
     #[serde(rename = "state angles")]
     StateAngles,
+    /// Where modes have states of their own.
+    #[serde(rename = "state conversions")]
+    StateConversions,
     /// Where a bearing is measured, converted or not.
     Bearings,
     /// Where a detection is missing.
@@ -149,6 +154,7 @@ impl Applies {
             Self::UnequalDimensions => "unequal dimensions",
             Self::Angles => "angles",
             Self::StateAngles => "state angles",
+            Self::StateConversions => "state conversions",
             Self::Bearings => "bearings",
             Self::Missed => "missed",
             Self::SeveralModes => "several modes",
@@ -192,6 +198,7 @@ impl Applies {
                 let mut readers = of_modes.chain([Reader::Common]);
                 readers.any(|reader| !problem.angles_of(reader).is_empty())
             }
+            Self::StateConversions => has_state_conversions(setup),
             Self::Bearings => {
                 let is_bearing =
                     |sensor: &Sensor<T, Dyn, Dyn>, row| sensor.reports(row) == Some(PolarComponent::Bearing);
@@ -384,6 +391,7 @@ fn apply_once<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
         || probability::apply(id, setup)
         || combination::apply(id, setup)
         || state_angle::apply(id, setup)
+        || state::apply(id, setup)
         || convention::apply(id, setup)
         || fixed_gain::apply(id, setup)
         || form::apply(id, setup)
