@@ -1,7 +1,8 @@
 """Problems drawn at random, on which a program's certified doubles are proven: what no published case has is met here.
 
 Named models and formulas, angles in the state, several sensors, filters that differ between modes, steps that differ in everything, missing
-entries, modes that cannot be reached, fixed gains and conversions. The program is asked with `trace --as python FILE`.
+entries, modes that cannot be reached, modes with states of their own, fixed gains and conversions. The program is asked with
+`trace --as python FILE`.
 """
 
 import ast
@@ -144,7 +145,39 @@ def problem(draw, id):
         with_given_gains(draw, raw, len(sensors[0]["R"]))
     for k in range(1, draw.randint(2, 5)):
         raw["measurements"].append(step(draw, scene, raw, k))
+    if filter["kind"] != "fixed-gain" and count > 1 and draw.random() < 0.4:
+        with_own_state(draw, raw, scene)
     return raw
+
+
+def with_own_state(draw, raw, scene):
+    """One of the modes has a state of its own, not far from that of the others."""
+    size, j = len(scene.state), draw.randrange(len(raw["modes"]))
+    mode, own = raw["modes"][j], [f"u{i}" for i in range(size)]
+    for key in ("f", "motion", "let", "parameters"):
+        mode.pop(key, None)
+    deviations = [deviation / 3 for deviation in scene.deviations]
+    mode |= {"state": own, **scenes.by_matrix(size)(draw), "Q": covariance(draw, deviations)}
+    names = [entry[0] for entry in scene.state]
+    others = [other["name"] for other in raw["modes"] if other is not mode]
+    kind = mode.get("filter", raw["filter"])["kind"]
+    raw["conversions"] = [conversion(draw, own, {"from": mode["name"]}, kind in scenes.CURVED, deviations)]
+    for other in others:
+        raw["conversions"].append(conversion(draw, names, {"from": other, "to": mode["name"]}, True, deviations))
+        raw["conversions"].append(conversion(draw, own, {"from": mode["name"], "to": other}, True, deviations))
+
+
+def conversion(draw, names, ends, may_curve, deviations):
+    """A matrix or formulas, near to the identity; sometimes something is added."""
+    others = [names[(i + 1) % len(names)] for i in range(len(names))]
+    if draw.random() < 0.4:
+        found = scenes.by_matrix(len(names))(draw)["F"]
+        ends = {**ends, "matrix": found}
+    else:
+        form = "{}*{} + {}*sin({})" if may_curve and draw.random() < 0.6 else "{}*{} + {}*{}"
+        pairs = zip(names, others)
+        ends = {**ends, "formulas": [form.format(number(draw, 0.8, 1.2), a, number(draw, 0.01, 0.2), b) for a, b in pairs]}
+    return {**ends, "added": covariance(draw, deviations)} if draw.random() < 0.5 else ends
 
 
 def number(draw, low, high):

@@ -27,10 +27,12 @@ def step(problem, at, probabilities, estimates):
         mixing = [unit(j, len(mixing)) for j in range(len(mixing))]
     modes, predictions, updates = [], [], []
     for j, weights in enumerate(mixing):
-        mixed = mixture(weights, estimates, problem.angles)
+        angles = problem.angles_of[j]
+        mixed = mixture(weights, problem.read(estimates, j, at), angles)
         predicted, values = predict(problem, j, at, mixed)
-        updated, seen_values = (predicted, {}) if seen is None else see(problem.filters[j], predicted, seen)
-        updated = Estimate(wrap_rows(updated.mean, problem.angles), updated.covariance)
+        seen_by_mode = seen and problem.seen_by(j, seen, at)
+        updated, seen_values = (predicted, {}) if seen is None else see(problem.filters[j], predicted, seen_by_mode)
+        updated = Estimate(wrap_rows(updated.mean, angles), updated.covariance)
         estimates_of_mode = {"mixed": mixed, "predicted": predicted, "updated": updated}
         modes.append({"mixing_probabilities": weights, **estimates_of_mode, **values, **seen_values})
         predictions.append(predicted)
@@ -40,10 +42,10 @@ def step(problem, at, probabilities, estimates):
     values = {
         "predicted_mode_probabilities": predicted_probabilities,
         "modes": modes,
-        "combined_prediction": mixture(predicted_probabilities, predictions, problem.angles),
+        "combined_prediction": mixture(predicted_probabilities, problem.read(predictions, None, at), problem.angles),
         **converted,
         "mode_probabilities": weighed,
-        "combined": mixture(weighed, updates, problem.angles),
+        "combined": mixture(weighed, problem.read(updates, None, at), problem.angles),
     }
     if "truth" in at:
         error = wrap_rows(problem.truth(at) - values["combined"].mean, problem.angles)
@@ -97,7 +99,7 @@ def predict(problem, j, at, mixed):
     filter, function = problem.filters[j], problem.motion(j, at)
     if filter["kind"] == "fixed-gain":
         return Estimate(function.at(mixed.mean), None), {}
-    found = moments(filter, function, mixed, problem.angles)
+    found = moments(filter, function, mixed, problem.angles_of[j])
     values = {} if found.jacobian is None else {"motion_jacobian": found.jacobian}
     return Estimate(found.mean, found.covariance + problem.noise(j, at)), values
 

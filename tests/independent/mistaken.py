@@ -14,6 +14,7 @@ import imm
 import models
 import reader
 import rules
+import states
 from balls import root_of, square, zeros
 from filters import Estimate
 
@@ -34,6 +35,7 @@ RIGHT = {
     "seen": reader.Problem.seen,
     "atan2": formulas.atan2,
     "turn": models.turn,
+    "converted": states.converted,
 }
 
 
@@ -199,6 +201,18 @@ def slope_of_the_square(y, x):
     return formulas.Dual(angle.value, [slope * scale for slope in angle.slopes])
 
 
+def as_it_stands(function, added, estimate):
+    return estimate
+
+
+def only_the_mean(function, added, estimate):
+    return Estimate(function.at(estimate.mean), estimate.covariance + added)
+
+
+def nothing_added(function, added, estimate):
+    return RIGHT["converted"](function, zeros(added.nrows(), added.ncols()), estimate)
+
+
 EQUATIONS = [
     ("the chain transposed", "predicted_mode_probabilities", "reader.Problem.chain", chain_transposed, "chain.not-stationary"),
     ("the chain of another step", "predicted_mode_probabilities", "reader.Problem.chain", chain_of_the_problem, "steps.changing"),
@@ -230,5 +244,8 @@ EQUATIONS = [
     ("the converted covariance of other sign", "innovation_covariance", "reader.convert", other_sign, "converted.generic"),
     ("the standard conversion for another", "innovation", "reader.convert", standard_for_all, "converted.additive"),
     ("the innovation not wrapped", "innovation", "filters.wrap_rows", not_wrapped, "wrap.innovation"),
+    ("estimates mixed unconverted", "mixed.mean", "reader.converted", as_it_stands, "states.extended"),
+    ("a conversion without its Jacobian", "mixed.covariance", "reader.converted", only_the_mean, "states.extended"),
+    ("a conversion that adds nothing", "mixed.covariance", "reader.converted", nothing_added, "states.kalman"),
     ("bearings of points not turned", "predicted_measurement", "filters.turned_to", not_turned, "wrap.counter-clockwise"),
 ]

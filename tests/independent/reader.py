@@ -4,6 +4,8 @@ Every number is the double nearest to its decimal, and exact from there on. A pr
 problem that must be rejected is said in `validity.py`.
 """
 
+from dataclasses import replace
+
 from flint import arb, arb_mat
 
 from balls import column, exact, matrix
@@ -13,6 +15,7 @@ from formulas import Affine, Curved, Scope, atan2, evaluate, hypot, rows_of
 from models import measurement as named_measurement
 from models import motion
 from noises import noise
+from states import added_of, composed, converted, map_of
 
 MATRIX_FILTERS = ("kalman", "converted", "fixed-gain")
 
@@ -22,9 +25,9 @@ class Problem:
 
     def __init__(self, raw):
         self.raw = raw
-        entries = [entry if isinstance(entry, list) else [entry] for entry in raw["state"]]
-        self.state = [entry[0] for entry in entries]
-        self.angles = [is_angle(entry) for entry in entries]
+        self.state, self.angles = names_and_angles(raw["state"])
+        own = [names_and_angles(mode.get("state", raw["state"])) for mode in raw["modes"]]
+        self.states, self.angles_of = [names for names, _ in own], [angles for _, angles in own]
         self.filters = [{**mode.get("filter", raw["filter"])} for mode in raw["modes"]]
         for j, given in enumerate(raw["filter"].get("modes", [])):
             self.filters[j] |= {key: matrix(given[key]) for key in ("gain", "innovation_covariance")}
@@ -51,6 +54,29 @@ class Problem:
             numbers["T"] = at["T"]
         return Scope({name: exact(x) for name, x in numbers.items()}, raw.get("let", []) + mode.get("let", []))
 
+    def scope_of(self, numbers):
+        """What names stand for outside of the modes."""
+        return Scope(numbers, self.raw.get("let", []))
+
+    def conversion(self, from_mode, to, at):
+        """How a mode is read by another, or by the combined estimates where `to` is none; nothing where both have one state."""
+        names = [mode["name"] for mode in self.raw["modes"]]
+        ends = (names[from_mode], None if to is None else names[to])
+        for asked in self.raw.get("conversions", []):
+            if (asked["from"], asked.get("to")) == ends:
+                return map_of(self, asked, from_mode, at), added_of(asked, len(self.state))
+        return None
+
+    def read(self, estimates, to, at):
+        """The estimates of all modes as they are read."""
+        found = [self.conversion(i, to, at) for i in range(len(estimates))]
+        return [converted(*way, estimate) if way else estimate for way, estimate in zip(found, estimates)]
+
+    def seen_by(self, j, seen, at):
+        """What mode j sees: the function of the common state, of its own."""
+        way = self.conversion(j, None, at)
+        return replace(seen, function=composed(seen.function, way[0])) if way else seen
+
     def motion(self, j, at):
         """x(k) = f(x(k−1)) of mode j."""
         mode = self.raw["modes"][j]
@@ -59,18 +85,18 @@ class Problem:
         if "F" in mode:
             return Affine(matrix(mode["F"]))
         if "f" in mode:
-            function = self.of_formulas(mode["f"], self.scope(j, at))
+            function = self.of_formulas(mode["f"], self.scope(j, at), self.states[j])
         else:
             asked = mode["motion"]
             given = bound(self.scope(j, at), asked)
-            function = Curved(motion(asked["model"], self.state, given, asked.get("others")))
+            function = Curved(motion(asked["model"], self.states[j], given, asked.get("others")))
         return function.as_affine(len(self.state)) if self.filters[j]["kind"] in MATRIX_FILTERS else function
 
-    def of_formulas(self, texts, scope):
-        """A formula for each entry, of the entries of the state."""
+    def of_formulas(self, texts, scope, state):
+        """A formula for each entry, of the entries of a state."""
 
         def function(numbers):
-            names = Scope({**scope.known, **dict(zip(self.state, numbers))}, scope.definitions)
+            names = Scope({**scope.known, **dict(zip(state, numbers))}, scope.definitions)
             return [evaluate(text, names) for text in texts]
 
         return Curved(function)
@@ -80,7 +106,7 @@ class Problem:
         rows = at["Q"][j] if "Q" in at else self.raw["modes"][j]["Q"]
         scope = self.scope(j, at)
         if isinstance(rows, dict):
-            return noise(rows["model"], self.state, bound(scope, rows))
+            return noise(rows["model"], self.states[j], bound(scope, rows))
         return arb_mat([[evaluate(x, scope) if isinstance(x, str) else exact(x) for x in row] for row in rows])
 
     def sensor(self, at):
@@ -109,9 +135,9 @@ class Problem:
             return Affine(matrix(rows)), [False] * len(rows)
         if measurement["kind"] == "range-bearing":
             return of_sensor(measurement), [kind == "bearing" for kind in measurement["components"]]
-        scope = Scope({name: exact(x) for name, x in self.raw.get("parameters", {}).items()}, self.raw.get("let", []))
+        scope = self.scope_of({name: exact(x) for name, x in self.raw.get("parameters", {}).items()})
         if measurement["kind"] == "formulas":
-            return self.of_formulas(measurement["h"], scope), [is_angle(entry) for entry in measurement["z"]]
+            return self.of_formulas(measurement["h"], scope, self.state), [is_angle(entry) for entry in measurement["z"]]
         function, angles = named_measurement(measurement["model"], self.state, bound(SENSOR, measurement))
         return Curved(function), angles
 
@@ -131,6 +157,12 @@ SENSOR = Scope({f"sensor_{entry}": arb(0) for entry in ("x", "y", "z", "vx", "vy
 def bound(scope, asked):
     """The scope with the parameters that a named model is given."""
     return Scope({**scope.known, **{name: exact(x) for name, x in asked.get("parameters", {}).items()}}, scope.definitions)
+
+
+def names_and_angles(state):
+    """The names of a state, and which of its entries are angles."""
+    entries = [entry if isinstance(entry, list) else [entry] for entry in state]
+    return [entry[0] for entry in entries], [is_angle(entry) for entry in entries]
 
 
 def is_angle(entry):

@@ -8,9 +8,9 @@ from flint import fmpq, fmpq_mat
 FORMATS = ("immaculate-problem/1", "immaculate-problem/2")
 NEEDED = {"format", "id", "state", "modes", "measurement", "R", "filter", "transition", "initial", "measurements"}
 ALWAYS = {"about", "flags", "units", "conventions"}  # format 2 may leave them out
-ADDED = {"parameters", "let", "sensors"}  # format 2 may have them
+ADDED = {"parameters", "let", "sensors", "conversions"}  # format 2 may have them
 OF_A_MODE = {"name", "F", "Q"}
-ADDED_TO_A_MODE = {"f", "motion", "let", "parameters", "filter", "M"}
+ADDED_TO_A_MODE = {"f", "motion", "let", "parameters", "filter", "M", "state"}
 OF_A_STEP = {"step", "z"}
 ADDED_TO_A_STEP = {"sensor", "T", "F", "Q", "H", "R", "transition", "truth"}
 
@@ -70,6 +70,7 @@ def check(raw):
         check_sensor(raw, sensor["measurement"], sensor["R"])
     check_shared_noise(raw, size)
     check_given(raw, size, modes)
+    check_conversions(raw, size)
     for k, at in enumerate(raw["measurements"]):
         check_step(raw, k, at, size, modes)
 
@@ -146,6 +147,34 @@ def check_shared_noise(raw, size):
             above = [q + m for q, m in zip(mode["Q"], mode["M"])]
             below = [[row[k] for row in mode["M"]] + r for k, r in enumerate(raw["R"])]
             demand(is_semidefinite(above + below), "not-positive-definite", place)
+
+
+def check_conversions(raw, size):
+    """One from each mode to each reader whose state is another, and no other; in the right shapes."""
+    names = [mode["name"] for mode in raw["modes"]]
+    states = {mode["name"]: described(mode.get("state", raw["state"])) for mode in raw["modes"]} | {None: described(raw["state"])}
+    demand(all(len(state) == size for state in states.values()), "shape", "modes: state")
+    needed = {(a, b) for a in names for b in [*names, None] if states[a] != states[b]}
+    found = []
+    for k, asked in enumerate(raw.get("conversions", [])):
+        place = f"conversions[{k}]"
+        check_keys(asked, {"from"}, {"to", "matrix", "formulas", "added"}, place)
+        for end in (asked["from"], asked.get("to", names[0])):
+            demand(end in names, "unknown", place)
+            demand(names.count(end) == 1, "format", place)
+        found.append((asked["from"], asked.get("to")))
+        demand(("matrix" in asked) != ("formulas" in asked), "format", place)
+        if "matrix" in asked:
+            check_matrix(asked["matrix"], size, size, place)
+        demand(len(asked.get("formulas", states[None])) == size, "shape", place)
+        if "added" in asked:
+            check_covariance(asked["added"], size, f"{place}.added")
+    demand(len(set(found)) == len(found) and set(found) == needed, "format", "conversions")
+
+
+def described(state):
+    """Names, units and angles of a state."""
+    return [tuple(entry) if isinstance(entry, list) else (entry,) for entry in state]
 
 
 def check_given(raw, size, modes):
