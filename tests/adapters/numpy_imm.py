@@ -13,8 +13,8 @@ Options, to see what the verdicts look like:
     --form gain|joseph|inverse|information   other algebra for the same exact values
     --single                                 all arithmetic in single precision
     --convention KEY=VALUE                   another convention, declared (see spec/formats.md);
-                                             there is no other unequal_dimensions and no other
-                                             converted_covariance here
+                                             there is no other unequal_dimensions, state_angle_mean
+                                             and converted_covariance here
     --mistake NAME                           a planted mistake (numpy_mistakes.py); may be repeated
 """
 
@@ -105,8 +105,6 @@ def not_here(problem):
         return "there is one filter for all modes here"
     if any("motion" in mode or isinstance(mode["Q"], dict) for mode in problem["modes"]):
         return "there are no named models here; formulas are"
-    if any(isinstance(name, list) and "angle" in name[2:] for name in problem["state"]):
-        return "there are no angles in the state here"
     return None
 
 
@@ -138,7 +136,8 @@ def arguments_of(problem, options):
 def step_arguments(problem, entry, options):
     """What may be another in each step: models, noises, chain. In format 1 it never is."""
     number = np.float32 if options.single else np.float64
-    names = [name if isinstance(name, str) else name[0] for name in problem["state"]]
+    names, angles = names_and_angles(problem["state"])
+    of_modes = [names_and_angles(mode.get("state", problem["state"])) for mode in problem["modes"]]
     others = {sensor["name"]: sensor for sensor in problem.get("sensors", [])}
     sensor = others[entry["sensor"]] if "sensor" in entry else problem
     parameters = {**sensor["measurement"], **({"H": entry["H"]} if "H" in entry else {})}
@@ -159,14 +158,14 @@ def step_arguments(problem, entry, options):
         measurement, noise = measurement.only(there), noise[np.ix_(there, there)]
     motions, process_noises = [], []
     for j, mode in enumerate(problem["modes"]):
-        of_mode = {**known, **mode.get("parameters", {})}
+        of_mode, (own, _) = {**known, **mode.get("parameters", {})}, of_modes[j]
         definitions = problem.get("let", []) + mode.get("let", [])
         if "f" in mode and "F" not in entry:
-            motions.append(Motion(formulas=Formulas(names, of_mode, definitions, mode["f"])))
+            motions.append(Motion(formulas=Formulas(own, of_mode, definitions, mode["f"])))
         else:
             matrix = entry["F"][j] if "F" in entry else mode["F"]
             motions.append(Motion(matrix=np.array(matrix, number)))
-        rows = entry["Q"][j] if "Q" in entry else noise_of(mode, names, of_mode, definitions)
+        rows = entry["Q"][j] if "Q" in entry else noise_of(mode, own, of_mode, definitions)
         process_noises.append(np.array(rows, number))
     return {
         "motions": motions,
@@ -175,7 +174,28 @@ def step_arguments(problem, entry, options):
         "measurement_noise": noise,
         "conversion": conversion,
         "chain": np.array(entry.get("transition", problem["transition"]), number),
+        "angles": [*(own for _, own in of_modes), angles],
+        "reads": reads_of(problem, [own for own, _ in of_modes], known, number),
     }
+
+
+def names_and_angles(state):
+    """The names of a state's entries, and which of them are angles."""
+    entries = [entry if isinstance(entry, list) else [entry] for entry in state]
+    return [entry[0] for entry in entries], np.array(["angle" in entry[2:] for entry in entries])
+
+
+def reads_of(problem, names, known, number):
+    """How each mode is read by each other one, and by the combined estimates, which are last."""
+    modes = [mode["name"] for mode in problem["modes"]]
+    n, reads = len(problem["state"]), {}
+    for asked in problem.get("conversions", []):
+        i, j = modes.index(asked["from"]), modes.index(asked["to"]) if "to" in asked else len(modes)
+        matrix, texts = asked.get("matrix"), asked.get("formulas")
+        formulas = texts and Formulas(names[i], known, problem.get("let", []), texts)
+        function = Motion(matrix and np.array(matrix, number), formulas)
+        reads[i, j] = function, np.array(asked.get("added", np.zeros((n, n))), number)
+    return reads
 
 
 def noise_of(mode, names, known, definitions):
@@ -760,9 +780,19 @@ class Imm:
         self.number = number
 
     def given(
-        self, motions, process_noises, measurement, measurement_noise, conversion, chain
+        self,
+        motions,
+        process_noises,
+        measurement,
+        measurement_noise,
+        conversion,
+        chain,
+        angles,
+        reads,
     ):
         """The models of the next step."""
+        self.angles = angles  # which entries of the state are, of each mode and of all together
+        self.reads = reads  # how mode i is read by mode j, where their states differ
         self.motions = motions  # one a mode
         self.process_noises = process_noises  # Q, one a mode
         self.measurement = measurement
@@ -788,13 +818,15 @@ class Imm:
             now.converted_covariance = self.converted_covariance(z)
             z, self.measurement_noise = now.converted_measurement, now.converted_covariance
         for mode in now.modes:
-            if z is None:
-                mode.updated = mode.predicted
-            else:
+            mean, covariance = mode.predicted
+            if z is not None:
                 self.measure(mode)
                 mode.innovation = self.innovation(mode, z)
                 mode.gain = self.gain(mode)
-                mode.updated = self.updated(mode)
+                mean, covariance = self.updated(mode)
+            angles = self.angles[mode.index]
+            mode.updated = np.where(angles, wrapped(mean), mean), covariance
+            if z is not None:
                 mode.log_likelihood = self.log_likelihood(mode)
                 mode.nis = self.nis(mode)
         now.mode_probabilities = (
@@ -818,7 +850,36 @@ class Imm:
 
     def mixed(self, mode):
         """What the mode's prediction starts from."""
-        return mixture(mode.mixing_probabilities, self.estimates)
+        estimates = self.read(self.estimates, mode.index)
+        return mixture(mode.mixing_probabilities, estimates, self.angles[mode.index])
+
+    def read(self, estimates, reader):
+        """The estimates of all modes in the state of a mode, or, after the last, the common one."""
+        converted = []
+        for i, (mean, covariance) in enumerate(estimates):
+            if (i, reader) in self.reads:
+                mean, covariance = self.converted(*self.reads[i, reader], mean, covariance)
+            converted.append((mean, covariance))
+        return converted
+
+    def converted(self, function, added, mean, covariance):
+        """c(x) and C P C' + A, C the slopes of c at x."""
+        slope = function.slope(mean)
+        return function.of(mean), slope @ covariance @ slope.T + added
+
+    def measured(self, mode, states):
+        """What the sensor sees of states of a mode, one a row."""
+        if (mode.index, len(self.motions)) in self.reads:
+            function, _ = self.reads[mode.index, len(self.motions)]
+            states = np.stack([function.of(state) for state in states])
+        return self.measurement.of_states(states)
+
+    def measured_slope(self, mode, state):
+        """H, or the Jacobian, by the state of the mode."""
+        if (mode.index, len(self.motions)) not in self.reads:
+            return self.measurement.slope(state)
+        function, _ = self.reads[mode.index, len(self.motions)]
+        return self.measurement.slope(function.of(state)) @ function.slope(state)
 
     def predicted(self, mode):
         """f(x) and F P F' + Q, or the same by points."""
@@ -834,8 +895,10 @@ class Imm:
             return mode.mixed
         _, weights, covariance_weights = self.rule
         points = np.stack([motion.of(point) for point in self.points(mode.mixed)])
+        angles = self.angles[mode.index]
+        points = in_turn_of(motion.of(mean), points, angles)
         predicted = weights @ points
-        deviations = points - predicted
+        deviations = np.where(angles, wrapped(points - predicted), points - predicted)
         return predicted, (deviations.T * covariance_weights) @ deviations + noise
 
     def points(self, estimate):
@@ -864,16 +927,16 @@ class Imm:
         mean, covariance = mode.predicted
         noise = self.measurement_noise
         if self.rule is None:
-            matrix = self.measurement.slope(mean)
+            matrix = self.measured_slope(mode, mean)
             mode.measurement_jacobian = matrix if self.linearises else None
-            mode.predicted_measurement = self.measurement.of_states(mean[None, :])[0]
+            mode.predicted_measurement = self.measured(mode, mean[None, :])[0]
             mode.cross_covariance = covariance @ matrix.T
             mode.innovation_covariance = matrix @ mode.cross_covariance + noise
             return
         _, weights, covariance_weights = self.rule
         points = self.measured_points(mode)
-        values = self.measurement.of_states(points)
-        centre = self.measurement.of_states(mean[None, :])[0]
+        values = self.measured(mode, points)
+        centre = self.measured(mode, mean[None, :])[0]
         mode.predicted_measurement = self.measurement.mean(weights, values, centre)
         deviations = self.measurement.difference(values, mode.predicted_measurement)
         mode.innovation_covariance = (deviations.T * covariance_weights) @ deviations + noise
@@ -928,18 +991,30 @@ class Imm:
 
     def combined_prediction(self, now):
         """The estimate before the measurement, for output."""
-        return mixture(now.predicted_mode_probabilities, [mode.predicted for mode in now.modes])
+        estimates = self.read([mode.predicted for mode in now.modes], len(now.modes))
+        return mixture(now.predicted_mode_probabilities, estimates, self.angles[-1])
 
     def combined(self, now):
         """The estimate after the measurement, for output."""
-        return mixture(now.mode_probabilities, [mode.updated for mode in now.modes])
+        estimates = self.read([mode.updated for mode in now.modes], len(now.modes))
+        return mixture(now.mode_probabilities, estimates, self.angles[-1])
 
 
-def mixture(weights, estimates):
-    """Mean and covariance of a mixture: the covariances and the spread of the means."""
-    mean = sum(weight * mean for weight, (mean, _) in zip(weights, estimates))
+def in_turn_of(reference, vectors, angles):
+    """The same vectors, their angles within half a turn of the reference's."""
+    return np.where(angles, reference + wrapped(vectors - reference), vectors)
+
+
+def mixture(weights, estimates, angles):
+    """Mean and covariance of a mixture: the covariances and the spread of the means.
+
+    Angles are averaged in the turn of the first estimate's.
+    """
+    first = estimates[0][0]
+    mean = sum(weight * in_turn_of(first, x, angles) for weight, (x, _) in zip(weights, estimates))
+    away = [np.where(angles, wrapped(x - mean), x - mean) for x, _ in estimates]
     covariance = sum(
-        weight * (p + np.outer(x - mean, x - mean)) for weight, (x, p) in zip(weights, estimates)
+        weight * (p + np.outer(d, d)) for weight, (_, p), d in zip(weights, estimates, away)
     )
     return mean, covariance
 
@@ -954,7 +1029,7 @@ class Joseph(Imm):
         mean, covariance = mode.predicted
         gain, cross = mode.gain, mode.cross_covariance
         if self.rule is None:
-            matrix = self.measurement.slope(mean)
+            matrix = self.measured_slope(mode, mean)
             rest = np.eye(len(mean), dtype=self.number) - gain @ matrix
             covariance = rest @ covariance @ rest.T + gain @ self.measurement_noise @ gain.T
         else:
@@ -987,7 +1062,7 @@ class Information(Imm):
     def updated(self, mode):
         mean, covariance = mode.predicted
         inverse = np.linalg.inv(covariance)
-        matrix, noise = self.measurement.slope(mean), self.measurement_noise
+        matrix, noise = self.measured_slope(mode, mean), self.measurement_noise
         if self.rule is not None:
             matrix = mode.cross_covariance.T @ inverse
             noise = mode.innovation_covariance - matrix @ mode.cross_covariance

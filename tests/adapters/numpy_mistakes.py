@@ -7,6 +7,7 @@ class overrides the method in which the mistake is made, so several can be plant
 import math
 
 import numpy as np
+from numpy_imm import mixture
 
 
 class TransitionTransposed:
@@ -37,9 +38,9 @@ class MixedSpreadOmitted:
     """The covariances are averaged, the spread of the means is forgotten."""
 
     def mixed(self, mode):
-        mean = sum(w * x for w, (x, _) in zip(mode.mixing_probabilities, self.estimates))
-        covariance = sum(w * p for w, (_, p) in zip(mode.mixing_probabilities, self.estimates))
-        return mean, covariance
+        mean, _ = super().mixed(mode)
+        estimates = self.read(self.estimates, mode.index)
+        return mean, sum(w * p for w, (_, p) in zip(mode.mixing_probabilities, estimates))
 
 
 class CovariancesNotMixed:
@@ -166,7 +167,7 @@ class GainOfMixedCovariance:
     def gain(self, mode):
         if self.rule is not None:
             return super().gain(mode)
-        matrix, covariance = self.measurement.slope(mode.predicted[0]), mode.mixed[1]
+        matrix, covariance = self.measured_slope(mode, mode.predicted[0]), mode.mixed[1]
         s = matrix @ covariance @ matrix.T + self.measurement_noise
         return covariance @ matrix.T @ np.linalg.inv(s)
 
@@ -203,7 +204,7 @@ class LikelihoodOfUpdatedResidual:
     def log_likelihood(self, mode):
         s = mode.innovation_covariance
         z = mode.innovation + mode.predicted_measurement
-        measured = self.measurement.of_states(mode.updated[0][None, :])[0]
+        measured = self.measured(mode, mode.updated[0][None, :])[0]
         residual = self.measurement.difference(z, measured)
         square = residual @ np.linalg.solve(s, residual)
         return -(square + np.log(np.linalg.det(s))) / 2 - self.two_pi(mode)
@@ -259,21 +260,48 @@ class CombinedSpreadOmitted:
 
     def combined(self, now):
         mean, _ = super().combined(now)
-        return mean, sum(w * mode.updated[1] for w, mode in zip(now.mode_probabilities, now.modes))
+        estimates = self.read([mode.updated for mode in now.modes], len(now.modes))
+        return mean, sum(w * p for w, (_, p) in zip(now.mode_probabilities, estimates))
 
 
 class CombinedWithPredictedProbabilities:
     """c_j in place of mu_j."""
 
     def combined(self, now):
-        weights, estimates = now.predicted_mode_probabilities, [mode.updated for mode in now.modes]
-        mean = sum(w * x for w, (x, _) in zip(weights, estimates))
-        return mean, sum(
-            w * (p + np.outer(x - mean, x - mean)) for w, (x, p) in zip(weights, estimates)
-        )
+        estimates = self.read([mode.updated for mode in now.modes], len(now.modes))
+        return mixture(now.predicted_mode_probabilities, estimates, self.angles[-1])
+
+
+class StatesMixedUnconverted:
+    """One list of states for all modes: whoever mixes them does not know what they mean."""
+
+    def mixed(self, mode):
+        return mixture(mode.mixing_probabilities, self.estimates, 0 * self.angles[mode.index])
+
+
+class StateConversionJacobianOmitted:
+    """The means are converted to be mixed, and the covariances come along as they are."""
+
+    def mixed(self, mode):
+        estimates = []
+        for i, (mean, covariance) in enumerate(self.estimates):
+            function, added = self.reads.get((i, mode.index), (None, 0))
+            mean = mean if function is None else function.of(mean)
+            estimates.append((mean, covariance + added))
+        return mixture(mode.mixing_probabilities, estimates, self.angles[mode.index])
+
+
+class StateConversionCovarianceNotAdded:
+    """What a mode does not know is padded with zeros."""
+
+    def converted(self, function, added, mean, covariance):
+        return super().converted(function, 0 * added, mean, covariance)
 
 
 MISTAKES = {
+    "states-mixed-unconverted": StatesMixedUnconverted,
+    "state-conversion-jacobian-omitted": StateConversionJacobianOmitted,
+    "state-conversion-covariance-not-added": StateConversionCovarianceNotAdded,
     "transition-transposed": TransitionTransposed,
     "transition-transposed-in-mixing": TransitionTransposedInMixing,
     "mixing-skipped": MixingSkipped,

@@ -173,6 +173,15 @@ last-likelihood-used-again mode_probabilities
 combined-spread-omitted combined.covariance
 combined-with-predicted-probabilities combined.mean
 END
+    # Modes with states of their own, and what is forgotten of a conversion.
+    expect 0 "4 right of 4 cases" "615 of 615 values" -- --case states -- "${numpy[@]}"
+    while read -r mistake quantity; do
+        expect 1 "FAULT $quantity" "MOST LIKELY" "($mistake; mistake)" -- --case states -- "${numpy[@]}" --mistake "$mistake"
+    done <<'END'
+states-mixed-unconverted mixed.mean
+state-conversion-jacobian-omitted mixed.covariance
+state-conversion-covariance-not-added mixed.covariance
+END
     expect 1 "MOST LIKELY, TWO AT ONCE" "(mixed-spread-omitted; mistake)" "(determinant-omitted; mistake)" \
         -- "${short[@]}" -- "${numpy[@]}" --mistake mixed-spread-omitted --mistake determinant-omitted
 

@@ -13,6 +13,9 @@ end
 
 % CHANGE HERE: your filter from a problem
 function imm = start(problem)
+  if isfield(problem, 'conversions')
+    error('immaculate:skipped', 'all modes have one state here');
+  end
   for j = 1:numel(problem.modes)
     mode = problem.modes{j};
     if isfield(mode, 'filter')
