@@ -42,6 +42,6 @@ done
 "$work/tools/bin/maturin" sdist --out "$work/source" 2>&1 | tail -n 1
 tar -xzf "$work"/source/*.tar.gz -C "$work/source"
 (cd "$work"/source/*/python && cargo metadata --locked --format-version 1 >/dev/null)
-for file in LICENSE src/main.rs src/cli/mod.rs fixtures/cases/lock.json templates/python/my_filter.py immaculate/py.typed python/src/lib.rs; do
+for file in LICENSE src/main.rs src/cli/mod.rs fixtures/cases/lock.json tests/adapters/templates/python/my_filter.py immaculate/py.typed python/src/lib.rs; do
     test -f "$work"/source/*/"$file" || { echo "the source distribution lacks $file" && exit 1; }
 done

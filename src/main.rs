@@ -62,6 +62,11 @@ fn main() -> ExitCode {
 
 /// Does what the arguments ask for, the first of them the program's name, and says and prints what it has to; the exit status.
 pub fn status_of(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    // A script whose variable is empty must not be taken for somebody who asks what a check is.
+    if arguments.last().is_some_and(|last| last == "--") {
+        return complain("nothing to check: there is no program after `--`", 2);
+    }
     let done = match Cli::try_parse_from(arguments) {
         Ok(cli) => run(&cli),
         // Help and version are output like any other; what is wrong with arguments goes to standard error.

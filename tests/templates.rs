@@ -5,7 +5,7 @@
 //! evidence: behaviour, and oracle for the filter.
 
 mod common;
-#[path = "../templates/rust/main.rs"]
+#[path = "adapters/templates/rust/main.rs"]
 mod my_filter;
 
 use common::program::{error_of, immaculate, names};
@@ -13,20 +13,23 @@ use std::path::{Path, PathBuf};
 
 /// The files of each language, beside the template's folder.
 const WRITTEN: [(&str, &[(&str, &str)]); 3] = [
-    ("python", &[("my_filter.py", "templates/python/my_filter.py")]),
+    (
+        "python",
+        &[("my_filter.py", "tests/adapters/templates/python/my_filter.py")],
+    ),
     (
         "cpp",
         &[
-            ("main.cpp", "templates/cpp/main.cpp"),
-            ("CMakeLists.txt", "templates/cpp/CMakeLists.txt"),
+            ("main.cpp", "tests/adapters/templates/cpp/main.cpp"),
+            ("CMakeLists.txt", "tests/adapters/templates/cpp/CMakeLists.txt"),
             ("immaculate.hpp", "tests/adapters/cpp/immaculate.hpp"),
         ],
     ),
     (
         "rust",
         &[
-            ("src/main.rs", "templates/rust/main.rs"),
-            ("Cargo.toml", "templates/rust/manifest.toml"),
+            ("src/main.rs", "tests/adapters/templates/rust/main.rs"),
+            ("Cargo.toml", "tests/adapters/templates/rust/manifest.toml"),
         ],
     ),
 ];

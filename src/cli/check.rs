@@ -6,7 +6,7 @@ use super::outputs::Outputs;
 use super::progress::bar;
 use super::search::{self, About, SearchArguments};
 use super::select::Select;
-use super::{Done, Refusal, demonstration, json_text, print, read_file};
+use super::{Done, Refusal, demonstration, json_text, read_file};
 use clap::Args;
 use immaculate::oracle::check::{check, check_problems};
 use immaculate::oracle::folder::Folder;
@@ -61,7 +61,7 @@ impl CheckArguments {
 pub fn run(arguments: &CheckArguments) -> Result<Done, Refusal> {
     arguments.outputs.check()?;
     if arguments.is_bare() {
-        print(&demonstration::text()?)?;
+        return Ok(demonstration::text()?.into());
     }
     let mut subject: Box<dyn Subject> = match &arguments.answers {
         Some(path) => Box::new(Folder { path: path.clone() }),

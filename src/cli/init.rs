@@ -1,7 +1,7 @@
 //! `immaculate init`: writes a small filter that passes `immaculate check`, with its adapter; one's own filter goes in its place.
 //!
 //! After this file the reader knows what is written in each language, and that no file that is there is ever touched. The templates are in
-//! `templates/`; what they stand on, in `tests/adapters/`.
+//! `tests/adapters/templates/`; what they stand on, beside it.
 
 use super::search::quoted;
 use super::{Done, Refusal, make_directory, write_file};
@@ -62,20 +62,35 @@ impl Language {
     /// The files by their paths in the folder.
     fn files(self) -> Vec<(&'static str, &'static str)> {
         match self {
-            Self::Python => vec![("my_filter.py", include_str!("../../templates/python/my_filter.py"))],
+            Self::Python => vec![(
+                "my_filter.py",
+                include_str!("../../tests/adapters/templates/python/my_filter.py"),
+            )],
             Self::Cpp => vec![
-                ("main.cpp", include_str!("../../templates/cpp/main.cpp")),
-                ("CMakeLists.txt", include_str!("../../templates/cpp/CMakeLists.txt")),
+                ("main.cpp", include_str!("../../tests/adapters/templates/cpp/main.cpp")),
+                (
+                    "CMakeLists.txt",
+                    include_str!("../../tests/adapters/templates/cpp/CMakeLists.txt"),
+                ),
                 ("immaculate.hpp", HEADER),
             ],
             Self::Octave => {
-                let mut files = vec![("my_filter.m", include_str!("../../templates/octave/my_filter.m"))];
+                let mut files = vec![(
+                    "my_filter.m",
+                    include_str!("../../tests/adapters/templates/octave/my_filter.m"),
+                )];
                 files.extend(OCTAVE);
                 files
             }
             Self::Rust => vec![
-                ("src/main.rs", include_str!("../../templates/rust/main.rs")),
-                ("Cargo.toml", include_str!("../../templates/rust/manifest.toml")),
+                (
+                    "src/main.rs",
+                    include_str!("../../tests/adapters/templates/rust/main.rs"),
+                ),
+                (
+                    "Cargo.toml",
+                    include_str!("../../tests/adapters/templates/rust/manifest.toml"),
+                ),
             ],
         }
     }

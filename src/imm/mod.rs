@@ -45,8 +45,8 @@ pub mod probability;
 pub mod problem;
 pub mod record;
 pub mod row;
-pub mod tables;
 pub mod state_conversion;
+pub mod tables;
 pub mod unequal;
 pub mod update;
 

@@ -366,7 +366,7 @@ has_numpy() { "$work/venv/bin/python" -c 'import numpy' 2>/dev/null; }
 
 # The examples for CI are what their schemas ask for and do what they say, and readers of JUnit count what the verdict counts.
 continuous_integration() {
-    local tools="$work/tools/bin" ci=templates/ci program
+    local tools="$work/tools/bin" ci=tests/adapters/templates/ci program
     if ! has_numpy || ! python3 -m venv "$work/tools" ||
         ! "$tools/pip" install --quiet check-jsonschema junitparser; then
         left_out "the examples for CI: no virtual environment, or no PyPI"
@@ -390,7 +390,7 @@ import sys
 from pathlib import Path
 from ruamel.yaml import YAML
 
-load = lambda name: YAML(typ="safe").load(Path("templates/ci", name))
+load = lambda name: YAML(typ="safe").load(Path("tests/adapters/templates/ci", name))
 job = load("gitlab-ci.yml")["judge-filter"]
 step = load("action.yml")["runs"]["steps"][1]["run"]
 for name, value in {"command": "python3 my_filter.py", "options": "--kind kalman", "folder": "verdict"}.items():

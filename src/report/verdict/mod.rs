@@ -106,7 +106,8 @@ fn figures(report: &Report) -> String {
         format!("; right values to {digits:.1} digits or more, the fewest in {id}")
     });
     let (precision, cases) = (report.ready.precision, report.cases.len());
-    format!("{precision}: {} of {cases} cases{digits}", parts.join(", "))
+    let word = if cases == 1 { "case" } else { "cases" };
+    format!("{precision}: {} of {cases} {word}{digits}", parts.join(", "))
 }
 
 /// How many values of the cases were judged, and how many they have.
@@ -192,11 +193,7 @@ pub(super) fn coverage(report: &Report) -> Vec<String> {
         "{judged} of {of} values of the cases that were asked for were judged."
     )];
     sentences.extend(passed_over(report));
-    for case in &report.cases {
-        if let Some(certified) = case.certified {
-            sentences.push(certified_steps(&case.id, certified, case.dimensions.steps()));
-        }
-    }
+    sentences.extend(certified(report));
     if !report.hidden.is_empty() && judged > 0 {
         let names: Vec<&str> = report.hidden.iter().map(|quantity| quantity.name()).collect();
         sentences.push(format!(
@@ -256,13 +253,24 @@ fn passed_over(report: &Report) -> Vec<String> {
     sentences
 }
 
-/// What of a problem of the user is proven.
-fn certified_steps(id: &str, certified: usize, all: usize) -> String {
-    if certified == all {
-        return format!("{id}: every expected value is certified.");
-    }
-    format!(
-        "{id}: the expected values are certified to step {certified} of {all}; after it they are those of Immaculate's own run in doubles, with \
-         its rounding noise, and each equation is judged on the program's own values as before."
-    )
+/// What of the problems of the user is proven: those that are proven to the end together, each of the others by itself.
+fn certified(report: &Report) -> Vec<String> {
+    let of_case = |case: &CaseReport| Some((case.id.clone(), case.certified?, case.dimensions.steps()));
+    let own = report.cases.iter().filter_map(of_case);
+    let (whole, partly): (Vec<_>, Vec<_>) = own.partition(|(_, certified, all)| certified == all);
+    let to_the_end = match &whole[..] {
+        [] => None,
+        [(id, ..)] => Some(format!("{id}: every expected value is certified.")),
+        several => Some(format!(
+            "{} problems: every expected value is certified.",
+            several.len()
+        )),
+    };
+    let to_a_step = partly.into_iter().map(|(id, certified, all)| {
+        format!(
+            "{id}: the expected values are certified to step {certified} of {all}; after it they are those of Immaculate's own run in doubles, \
+             with its rounding noise, and each equation is judged on the program's own values as before."
+        )
+    });
+    to_the_end.into_iter().chain(to_a_step).collect()
 }
