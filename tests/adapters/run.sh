@@ -333,7 +333,7 @@ cpp_filter() {
 
 # What `immaculate init` writes is right as it stands, in each language whose tools are there.
 templates() {
-    local all="44 right of 44 cases" python="$work/venv/bin/python" answers="$work/template-answers" language
+    local all="RIGHT on what was judged: my filter" python="$work/venv/bin/python" answers="$work/template-answers" language
     for language in python octave cpp rust; do
         judged "init $language" 0 "NEXT" "cd $work/$language" -- immaculate init "$language" "$work/$language"
         judged "init $language again" 2 "is there already, and is not overwritten" -- immaculate init "$language" "$work/$language"
