@@ -1,7 +1,7 @@
-//! My filter under test: `cargo build --release && immaculate check -- target/release/my_filter`
+//! My filter under test, as `cargo build --release && immaculate check -- target/release/my_filter` judges it.
 //!
-//! `MyFilter` is a textbook interacting multiple model filter whose modes are Kalman filters, and it is right. Put your own in its place: what
-//! is marked CHANGE HERE is all that Immaculate sees of a filter.
+//! `MyFilter` is a textbook interacting multiple model filter whose modes are Kalman filters, and it is right. Put your own in its place:
+//! what is marked CHANGE HERE is all that Immaculate sees of a filter.
 
 use nalgebra::{DMatrix, DVector};
 use serde_json::{Value, json};
