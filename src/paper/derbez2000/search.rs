@@ -28,7 +28,7 @@ pub type AxisErrors = [[Estimate; 3]; 2];
 
 /// What a configuration gives for table 1.
 #[derive(Debug, Clone, Copy)]
-pub struct Table {
+pub struct AxisTable {
     /// The errors.
     pub errors: AxisErrors,
     /// In x and y, the errors of IMM and of the fixed gain less that of CA, paired run by run.
@@ -50,7 +50,7 @@ pub struct Nearest {
     /// The configuration.
     pub configuration: Candidate,
     /// Its errors over all runs.
-    pub table: Table,
+    pub table: AxisTable,
     /// The greatest of |ln(computed/published)|.
     pub distance: f64,
     /// How many configurations were tried.
@@ -162,7 +162,7 @@ pub fn distance(errors: &AxisErrors, published: &[[f64; 3]; 2]) -> f64 {
 }
 
 /// The errors of a configuration and their differences.
-pub fn table(configuration: &Candidate, runs: usize, seed: u64) -> Table {
+pub fn table(configuration: &Candidate, runs: usize, seed: u64) -> AxisTable {
     let scenario = configuration.scenario();
     // One after the other: all cores are at work on other configurations.
     let runs: Vec<Vec<Run>> = (0..runs).map(|run| scenario.one_run(run, seed)).collect();
@@ -171,7 +171,7 @@ pub fn table(configuration: &Candidate, runs: usize, seed: u64) -> Table {
         runs: &runs,
     };
     let axes = [ErrorQuantity::X, ErrorQuantity::Y];
-    Table {
+    AxisTable {
         errors: axes.map(|quantity| [IMM, FIXED_GAIN, CA].map(|filter| comparison.error(filter, quantity))),
         differences: axes.map(|quantity| [IMM, FIXED_GAIN].map(|filter| comparison.difference(filter, CA, quantity))),
     }
