@@ -123,6 +123,7 @@ fn show(trace: &mut Trace, number: usize, step: &Step, is_detected: bool) {
             of_mode(Quantity::CrossCovariance, &mode.cross.concat());
             of_mode(Quantity::Gain, &mode.gain.concat());
             of_mode(Quantity::LogLikelihood, &[mode.log_likelihood]);
+            of_mode(Quantity::Nis, &[mode.square]);
         }
     }
 }
@@ -150,6 +151,7 @@ struct Mode {
     gain: Rows,
     updated: Estimate,
     log_likelihood: f64,
+    square: f64,
 }
 
 /// What all modes compute in a step.
@@ -244,9 +246,9 @@ impl Imm {
         mode.updated.x = x.iter().zip(correction).map(|(x, correction)| x + correction).collect();
         mode.updated.p = sum(p, &scaled(&reduction, -1.0));
         let weighted = applied(&inverse, &mode.innovation);
-        let square: f64 = mode.innovation.iter().zip(weighted).map(|(a, b)| a * b).sum();
+        mode.square = mode.innovation.iter().zip(weighted).map(|(a, b)| a * b).sum();
         let two_pi = (2.0 * std::f64::consts::PI).ln() * f64::from(u32::try_from(z.len()).unwrap());
-        mode.log_likelihood = -(square + determinant.ln() + two_pi) / 2.0;
+        mode.log_likelihood = -(mode.square + determinant.ln() + two_pi) / 2.0;
     }
 }
 

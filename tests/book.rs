@@ -150,11 +150,15 @@ fn every_mistake_of_the_catalogue_is_made_in_an_equation_of_a_paper() {
     let in_none: Vec<&str> = catalogue()
         .iter()
         .filter(|variant| variant.kind != Kind::Form)
-        // No paper linearises, has steps that differ, an angle in the state, or modes with states of their own.
+        // No paper linearises, has steps that differ, an angle in the state, modes with states of their own, or correlated noises.
         .filter(|variant| {
             !matches!(
                 variant.applies,
-                Applies::Linearised | Applies::ChangingSteps | Applies::StateAngles | Applies::StateConversions
+                Applies::Linearised
+                    | Applies::ChangingSteps
+                    | Applies::StateAngles
+                    | Applies::StateConversions
+                    | Applies::CorrelatedNoises
             )
         })
         .map(|variant| variant.id.as_str())

@@ -96,7 +96,10 @@ fn in_doubles(arguments: &TraceArguments, problem: &ProblemFile) -> Result<Done,
         csv::write(&problem.id, &values, "", |_, _| String::new())
     } else if arguments.json {
         let steps = values.steps_as_json();
-        json_text(&json!({ "format": FORMAT, "id": problem.id, "steps": steps, "error": failure }))
+        drop(values);
+        let mut object = json!({ "format": FORMAT, "id": problem.id, "steps": null, "error": failure });
+        object["steps"] = steps.into(); // moved: inside the macro they would be copied
+        json_text(&object)
     } else {
         let texts = values.map(|_, numbers| numbers.iter().map(|number| format!("{number:?}")).collect());
         report::trace::text(problem, &texts)
