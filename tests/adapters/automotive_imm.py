@@ -185,8 +185,8 @@ class Imm:
         cross = P @ H.T
         S = H @ cross + R
         gain = np.linalg.solve(S, cross.T).T
-        log_likelihood = -innovation @ np.linalg.solve(S, innovation) / 2
-        log_likelihood -= len(z) * math.log(2 * math.pi) / 2
+        nis = innovation @ np.linalg.solve(S, innovation)
+        log_likelihood = -nis / 2 - len(z) * math.log(2 * math.pi) / 2
         if "determinant-omitted" not in self.wrong:
             log_likelihood -= np.linalg.slogdet(S)[1] / 2
         updated = P if "covariance-not-updated" in self.wrong else P - gain @ S @ gain.T
@@ -199,6 +199,7 @@ class Imm:
             gain=gain,
             updated={"mean": x + gain @ innovation, "covariance": updated},
             log_likelihood=log_likelihood,
+            nis=nis,
         )
 
 

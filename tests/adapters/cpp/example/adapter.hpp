@@ -87,6 +87,7 @@ private:
             of_mode("cross_covariance", mode.cross_covariance);
             of_mode("gain", mode.gain);
             of_mode("log_likelihood", mode.log_likelihood);
+            of_mode("nis", mode.nis);
         }
         return result;
     }

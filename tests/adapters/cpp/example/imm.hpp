@@ -92,7 +92,7 @@ struct ModeStep {
     MatrixXd motion_jacobian, measurement_jacobian;  // of extended filters
     VectorXd predicted_measurement, innovation;
     MatrixXd innovation_covariance, cross_covariance, gain;
-    double log_likelihood = 0;
+    double log_likelihood = 0, nis = 0;
 };
 
 // What all modes compute in one step.
@@ -186,8 +186,8 @@ private:
         mode.updated.covariance = (rest + rest.transpose()) / 2;  // what is not symmetric is rounding, and would grow from step to step
         const MatrixXd root = S.matrixL();
         const double log_determinant = 2 * root.diagonal().array().log().sum();
-        mode.log_likelihood =
-            -(mode.innovation.dot(S.solve(mode.innovation)) + log_determinant + z.size() * std::log(2 * M_PI)) / 2;
+        mode.nis = mode.innovation.dot(S.solve(mode.innovation));
+        mode.log_likelihood = -(mode.nis + log_determinant + z.size() * std::log(2 * M_PI)) / 2;
     }
 
     // Mean and covariance of a function of points, and the deviations of its values. Angles are averaged around a centre.

@@ -76,10 +76,11 @@ public:
                 const Eigen::LDLT<MatrixXd> factor(S);
                 const MatrixXd gain = factor.solve(cross.transpose()).transpose();
                 const double log_determinant = (2 * EIGEN_PI * factor.vectorD().array()).log().sum();
-                log_likelihoods[j] = -(innovation.dot(factor.solve(innovation)) + log_determinant) / 2;
+                const double nis = innovation.dot(factor.solve(innovation));
+                log_likelihoods[j] = -(nis + log_determinant) / 2;
                 shown.set("predicted_measurement", j, predicted).set("innovation", j, innovation);
                 shown.set("innovation_covariance", j, S).set("cross_covariance", j, cross).set("gain", j, gain);
-                shown.set("log_likelihood", j, log_likelihoods[j]);
+                shown.set("log_likelihood", j, log_likelihoods[j]).set("nis", j, nis);
                 now[j].mean += gain * innovation;
                 const MatrixXd P = now[j].covariance - gain * S * gain.transpose();
                 now[j].covariance = (P + P.transpose()) / 2;  // what is not symmetric is rounding, and would grow

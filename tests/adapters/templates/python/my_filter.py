@@ -70,6 +70,7 @@ class MyFilter:
                     cross_covariance=cross,
                     gain=gain,
                     log_likelihood=log_likelihoods[j],
+                    nis=innovation @ np.linalg.solve(S, innovation),
                 )
                 x[j] = x[j] + gain @ innovation
                 P[j] = P[j] - gain @ S @ gain.T

@@ -129,6 +129,7 @@ impl MyFilter {
         mode["cross_covariance"] = rows(&cross);
         mode["gain"] = rows(&gain);
         mode["log_likelihood"] = json!(log_likelihood);
+        mode["nis"] = json!(square);
         let covariance = &predicted.covariance - &gain * &s * gain.transpose();
         let updated = Estimate {
             mean: &predicted.mean + &gain * &innovation,
