@@ -5,6 +5,7 @@
 //! start, a wrong case alone, stop                              right there? then something is kept between problems
 //! ```
 
+use super::check::that_it_has;
 use super::evidence::Answered;
 use super::invalid::Invalid;
 use super::observation::{Discrepancy, Observation};
@@ -47,7 +48,7 @@ pub(super) fn ask_again(
             .collect();
         remarks.extend(new);
         // The same answer is as wrong as before.
-        let is_same = values(&answer, case).is_some_and(|again| Discrepancy::between(&case.shown, again).is_none());
+        let is_same = values(&answer, case).is_some_and(|again| Discrepancy::between(&case.shown, &again).is_none());
         if !is_same && is_right(case.index, answer)? {
             ids.push(case.problem.id.clone());
         }
@@ -67,7 +68,7 @@ fn differs(
 ) -> Result<Option<Observation>, Invalid> {
     let answer = subject.run(first.problem);
     let again = values(&answer, first);
-    let difference = again.and_then(|again| Discrepancy::between(&first.shown, again));
+    let difference = again.as_ref().and_then(|again| Discrepancy::between(&first.shown, again));
     if again.is_some() && difference.is_none() {
         return Ok(None);
     }
@@ -78,10 +79,12 @@ fn differs(
     }))
 }
 
-/// The values of an answer, if it has those of the problem.
-fn values<'a>(answer: &'a Answer, of: &Answered) -> Option<&'a Trace> {
+/// The values of an answer that are judged, if it has those of the problem.
+fn values(answer: &Answer, of: &Answered) -> Option<Trace> {
     match answer {
-        Answer::Steps { trace, .. } if trace.check(&of.shown.dimensions).is_ok() => Some(trace),
+        Answer::Steps { trace, .. } if trace.check(&of.shown.dimensions).is_ok() => {
+            Some(that_it_has(of.problem, trace.clone()))
+        }
         _ => None,
     }
 }

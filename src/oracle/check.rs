@@ -389,11 +389,7 @@ pub(super) fn judge_answer(
             return Ok((report, None));
         }
     };
-    let shown = if problem.lacks_consistency {
-        shown.without(Needs::Consistency)
-    } else {
-        shown
-    };
+    let shown = that_it_has(problem, shown);
     let reference = match question {
         Question::Published(_) => reference_of(problem, expected, conventions, ready.precision)?,
         Question::Own { .. } => Reference::new(problem, Some(expected), conventions, ready.precision)?,
@@ -408,6 +404,14 @@ pub(super) fn judge_answer(
     let is_drowned = error.is_some() && stops_where_noise_drowns(&shown, &reference);
     report.judged_as(judgement, error, is_drowned);
     Ok((report, Some((shown, reference))))
+}
+
+/// Of what is shown, the values that a problem has: a case that was published without some is not judged on them.
+pub(super) fn that_it_has(problem: &ProblemFile, shown: Trace) -> Trace {
+    if problem.lacks_consistency {
+        return shown.without(Needs::Consistency);
+    }
+    shown
 }
 
 /// What an answer to a good problem shows, with the error if it stopped; or the outcome where there is nothing to be judged.
