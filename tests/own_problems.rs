@@ -423,7 +423,10 @@ fn the_command_judges_files_and_folders() {
     assert_eq!(whole.status.code(), Some(0), "{whole:?}");
     let text = String::from_utf8(whole.stdout).unwrap();
     assert!(text.contains(" long ") && text.contains(" other "), "{text}");
-    assert!(text.contains("2 problems: every expected value is certified."), "{text}");
+    assert!(
+        text.contains("2 problems: every expected value is certified."),
+        "{text}"
+    );
     assert!(text.contains("RIGHT: "), "{text}");
     let planted = check("a.json", &["--plant", "covariance-not-updated"]);
     assert_eq!(planted.status.code(), Some(1));

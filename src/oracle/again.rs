@@ -68,7 +68,9 @@ fn differs(
 ) -> Result<Option<Observation>, Invalid> {
     let answer = subject.run(first.problem);
     let again = values(&answer, first);
-    let difference = again.as_ref().and_then(|again| Discrepancy::between(&first.shown, again));
+    let difference = again
+        .as_ref()
+        .and_then(|again| Discrepancy::between(&first.shown, again));
     if again.is_some() && difference.is_none() {
         return Ok(None);
     }
