@@ -154,6 +154,7 @@ pub fn drawn(seed: u64, number: u64, offer: &Offer) -> Option<ProblemFile> {
     let mut draw = Draw::new(seed, number);
     let scene = scene::scene(&mut draw, offer)?;
     let problem = event::happen(&mut draw, scene, offer)?;
+    problem.check().ok()?;
     Some(named(problem, seed, number))
 }
 

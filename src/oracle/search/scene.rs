@@ -402,9 +402,17 @@ fn turn(draw: &mut Draw) -> Parts {
     ];
     let deviations = [4.0, 1.5, 4.0, 1.5, 0.1].map(|deviation| deviation * draw.between(0.7, 1.3));
     let estimates = (0..2).map(|_| estimate(draw, &centre, &deviations)).collect();
+    // White acceleration, and a random walk of the rate.
     let noise = |draw: &mut Draw, turning: f64| {
-        let parameters = json!({ "q": rounded(draw.between(0.3, 2.0), 1), "q_turn": turning });
-        json!({ "model": "coordinated-turn-unknown-rate-white-noise", "parameters": parameters })
+        let q = rounded(draw.between(0.3, 2.0), 1);
+        let [place, mixed, velocity] = ["T^3/3", "T^2/2", "T"].map(|of_step| json!(format!("{q}*{of_step}")));
+        json!([
+            [place, mixed, 0, 0, 0],
+            [mixed, velocity, 0, 0, 0],
+            [0, 0, place, mixed, 0],
+            [0, 0, mixed, velocity, 0],
+            [0, 0, 0, 0, format!("{turning}*T")],
+        ])
     };
     let (measurement, r) = sight(draw, [0, 2], sensor);
     Parts {
