@@ -110,7 +110,7 @@ fn leave_the_first_step_unmixed<T: Real>(setup: &mut Setup<T>) {
         1 => previous.mode_probabilities[j].clone(),
         _ => (Equations::standard().predicted_mode_probability)(problem, previous, now, j),
     };
-    if setup.problem.interaction == Interaction::Imm {
+    if setup.problem.interaction != Interaction::Unmixed {
         setup.equations.mixing_probabilities = mixed_from_the_second_step;
     }
 }
