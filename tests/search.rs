@@ -48,11 +48,16 @@ fn a_drawn_problem_is_read_from_its_own_file() {
     }
 }
 
+/// Modes with states of their own are not drawn.
+fn is_drawn(kind: &&str) -> bool {
+    *kind != "state-conversion"
+}
+
 #[test]
 fn every_kind_and_every_behaviour_is_drawn() {
     let problems = some(0..300);
     let drawn: BTreeSet<&str> = problems.iter().flat_map(ProblemFile::kinds).collect();
-    assert_eq!(drawn, kinds().collect());
+    assert_eq!(drawn, kinds().filter(is_drawn).collect());
     let flags: BTreeSet<&str> = problems
         .iter()
         .flat_map(|problem| &problem.flags)
@@ -225,7 +230,7 @@ fn a_mistake_is_found_and_shown_by_no_more_than_it_needs() {
 
 #[test]
 fn nothing_is_found_against_a_right_filter_of_any_kind() {
-    for kind in kinds() {
+    for kind in kinds().filter(is_drawn) {
         let searched = searched(&mut planted(&[]), &request(12, &[kind]));
         assert_eq!(searched.found, None, "{kind}");
         assert!(!searched.is_wrong());

@@ -24,7 +24,7 @@ pub const MIXINGS: [&str; 2] = ["mixed", UNMIXED];
 pub const UNMIXED: &str = "unmixed";
 
 /// The kinds of filter whose name is not that of a rule.
-const OTHER_KINDS: [&str; 8] = [
+const OTHER_KINDS: [&str; 9] = [
     "kalman",
     "extended",
     "extended-iterated",
@@ -33,10 +33,14 @@ const OTHER_KINDS: [&str; 8] = [
     "fixed-gain",
     "fixed-gain-unmixed",
     CORRELATED_NOISE,
+    STATE_CONVERSION,
 ];
 
 /// What a filter must take, beside its own kind, where the noises of motion and measurement are correlated.
 pub(super) const CORRELATED_NOISE: &str = "correlated-noise";
+
+/// What a filter must take, beside its own kind, where modes have states of their own.
+pub(super) const STATE_CONVERSION: &str = "state-conversion";
 
 /// The families of filters, which differ in their equations and not only in a rule: [`FilterFile::family`].
 pub const FAMILIES: [&str; 6] = ["kalman", "extended", "cubature", "unscented", "converted", "fixed-gain"];

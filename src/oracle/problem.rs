@@ -3,7 +3,7 @@
 //! After this file the reader knows the formats `immaculate-problem/1` and `/2` from the code's side (`spec/formats.md` is their
 //! description). Format 1 is format 2 without what [`super::models`] adds. What must be true of a file is in `well_formed`.
 
-use super::filter_file::CORRELATED_NOISE;
+use super::filter_file::{CORRELATED_NOISE, STATE_CONVERSION};
 pub use super::filter_file::{FAMILIES, FilterFile, FixedGainFile, MIXINGS, RULES, UNMIXED, kinds};
 use super::invalid::{Class, Invalid};
 use super::models::{ComponentFile, ModeKeys, ModeModels, ModelParameters};
@@ -328,6 +328,9 @@ impl ProblemFile {
             .any(|mode| mode.models.noise_cross_covariance.is_some())
         {
             kinds.push(CORRELATED_NOISE);
+        }
+        if !self.conversions.is_empty() {
+            kinds.push(STATE_CONVERSION);
         }
         kinds
     }

@@ -56,7 +56,7 @@ def ready(message, options):
         "precision": "single" if options.single else "double",
         "conventions": options.conventions,
         "formats": ["immaculate-problem/1", "immaculate-problem/2"],
-        "kinds": ["kalman", "extended", "unscented", "converted", *RULES],
+        "kinds": ["kalman", "extended", "unscented", "converted", "state-conversion", *RULES],
         "echo": (np.array(echo["matrix"]) @ np.array(echo["vector"])).tolist(),
     }
 

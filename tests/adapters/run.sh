@@ -260,21 +260,21 @@ octave_filter() {
         left_out "Octave: not installed"
         return
     fi
-    octave "immaculate.run_folder('$work/problems', '$work/answers', example_filter())" >"$work/octave" 2>&1 || cat "$work/octave"
+    octave "immaculate.run_folder('$work/problems', '$work/answers', example_filter())" >"$work/octave.log" 2>&1 || cat "$work/octave.log"
     expect 0 "RIGHT on what was judged: Octave example, double precision" -- --answers "$work/answers"
     expect 0 "16 right, 1 skipped of 17 cases" "4338 of 4479 values" -- --kind converted --answers "$work/answers"
     expect 0 "23 right, 6 skipped of 29 cases" "there are no formulas and no named models here" -- "${format_2[@]}" \
         --answers "$work/answers"
 
     printed octave >"$work/my_filter.m"
-    octave "addpath('$work'); immaculate.run_folder('$work/problems', '$work/printed', my_filter())" >"$work/octave" 2>&1 || cat "$work/octave"
+    octave "addpath('$work'); immaculate.run_folder('$work/problems', '$work/printed', my_filter())" >"$work/octave.log" 2>&1 || cat "$work/octave.log"
     printed_is_right mine --answers "$work/printed"
 
     # The same in a test of its own, the long table, another convention, a mistake and an error, on few cases.
     mkdir "$work/few"
     cp "$work"/problems/{mixing.two-modes,missing.kalman,sensors.extended,heading.extended}.*.json "$work/few"
-    octave "immaculate.run_folder('$work/few', '$work/tables', example_filter('first_step', 'unmixed'), 'csv')" >"$work/octave" 2>&1 ||
-        cat "$work/octave"
+    octave "immaculate.run_folder('$work/few', '$work/tables', example_filter('first_step', 'unmixed'), 'csv')" >"$work/octave.log" 2>&1 ||
+        cat "$work/octave.log"
     expect 0 "4 right, 1 skipped of 5 cases" -- --case mixing.two --case missing.kalman --case sensors.ext --case heading.ext \
         --answers "$work/tables"
     test_octave 0 "4 Passed, 0 Failed, 1 Incomplete" -- "example_filter()"

@@ -7,7 +7,7 @@
 use super::draw::{Draw, rounded};
 use crate::model::Conversion;
 use crate::number::Real;
-use crate::oracle::filter_file::CORRELATED_NOISE;
+use crate::oracle::filter_file::{CORRELATED_NOISE, STATE_CONVERSION};
 use crate::oracle::problem::{Conventions, FORMAT, FORMAT_2, ProblemFile, Rows};
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -22,9 +22,13 @@ pub struct Offer {
 }
 
 impl Offer {
-    /// The kinds of which there are problems: extended filters and correlated noises need format 2.
+    /// The kinds of which there are problems: extended filters and correlated noises need format 2, and no states of their own are drawn.
     pub(super) fn possible(&self) -> Vec<&str> {
-        let kinds = self.kinds.iter().map(String::as_str);
+        let kinds = self
+            .kinds
+            .iter()
+            .map(String::as_str)
+            .filter(|kind| *kind != STATE_CONVERSION);
         kinds.filter(|kind| self.is_format_2 || !is_new(kind)).collect()
     }
 }

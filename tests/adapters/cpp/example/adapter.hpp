@@ -47,7 +47,6 @@ public:
 
 private:
     void check_what_is_here() const {
-        if (problem_.has("conversions")) throw immaculate::Skipped("all modes have one state here");
         for (const Part &mode : problem_["modes"].parts()) {
             if (mode.has("filter")) throw immaculate::Skipped("there is one filter for all modes here");
             if (mode["Q"].raw().is_object()) throw immaculate::Skipped("there are no named noises here; formulas are");

@@ -1,6 +1,6 @@
 % immaculate.is_asked(filter, problem): whether a filter is asked for a problem: by its format, and by the name of the problem's filter.
 %
-% Noises of motion and measurement that are correlated (M of a mode) are for filters that say so.
+% Noises of motion and measurement that are correlated (M of a mode), and modes with states of their own, are for filters that say so.
 function result = is_asked(filter, problem)
   kind = problem.filter.kind;
   if strcmp(kind, 'cubature')
@@ -11,7 +11,8 @@ function result = is_asked(filter, problem)
     kind = 'extended-iterated';
   end
   is_correlated = isfield(problem, 'modes') && iscell(problem.modes) && any(cellfun(@(mode) isfield(mode, 'M'), problem.modes));
-  if is_correlated && ~any(strcmp('correlated-noise', filter.kinds))
+  is_converted = isfield(problem, 'conversions');
+  if is_correlated && ~any(strcmp('correlated-noise', filter.kinds)) || is_converted && ~any(strcmp('state-conversion', filter.kinds))
     result = false;
     return
   end
