@@ -19,7 +19,7 @@ pub fn plain(markdown: &str, of: &Item) -> String {
 }
 
 /// The words, without what sets them.
-fn text_of<'a>(events: impl Iterator<Item = Event<'a>>) -> String {
+pub fn text_of<'a>(events: impl Iterator<Item = Event<'a>>) -> String {
     let mut text = String::new();
     for event in events {
         match event {
@@ -36,8 +36,13 @@ pub type MarkdownRow<'a> = Vec<Vec<Event<'a>>>;
 
 /// The rows of the tables of a doc comment; the first is the header.
 pub fn cells<'a>(markdown: &'a str, of: &Item) -> Vec<MarkdownRow<'a>> {
+    rows(events(markdown, of))
+}
+
+/// The rows of the tables among events; the first is the header.
+pub fn rows<'a>(events: impl IntoIterator<Item = Event<'a>>) -> Vec<MarkdownRow<'a>> {
     let mut rows: Vec<MarkdownRow> = Vec::new();
-    for event in events(markdown, of) {
+    for event in events {
         match event {
             Event::Start(Tag::TableHead | Tag::TableRow) => rows.push(Vec::new()),
             Event::Start(Tag::TableCell) => {
@@ -65,9 +70,19 @@ pub fn events<'a>(markdown: &'a str, of: &Item) -> Vec<Event<'a>> {
         is_name.then_some((link.reference, CowStr::Borrowed("")))
     };
     let parser = Parser::new_with_broken_link_callback(markdown, Options::ENABLE_TABLES, Some(shortcut));
+    let as_meant = parser.map(|event| match event {
+        // Angle brackets of a doc comment are meant.
+        Event::Html(text) | Event::InlineHtml(text) => Event::Text(text),
+        other => other,
+    });
+    led(as_meant, |address| target(address, of))
+}
+
+/// Events with each link led to its target; one that has none is its words.
+pub fn led<'a>(events: impl IntoIterator<Item = Event<'a>>, target: impl Fn(&str) -> Option<String>) -> Vec<Event<'a>> {
     let mut is_link = Vec::new();
-    let mut events = Vec::new();
-    for event in parser {
+    let mut led = Vec::new();
+    for event in events {
         match event {
             Event::Start(Tag::Link {
                 link_type,
@@ -75,7 +90,7 @@ pub fn events<'a>(markdown: &'a str, of: &Item) -> Vec<Event<'a>> {
                 title,
                 id,
             }) => {
-                let target = target(&dest_url, of);
+                let target = target(&dest_url);
                 is_link.push(target.is_some());
                 let to = |dest_url: String| Tag::Link {
                     link_type,
@@ -83,19 +98,17 @@ pub fn events<'a>(markdown: &'a str, of: &Item) -> Vec<Event<'a>> {
                     title,
                     id,
                 };
-                events.extend(target.map(|address| Event::Start(to(address))));
+                led.extend(target.map(|address| Event::Start(to(address))));
             }
             Event::End(TagEnd::Link) => {
                 if is_link.pop() == Some(true) {
-                    events.push(event);
+                    led.push(event);
                 }
             }
-            // Angle brackets of a doc comment are meant.
-            Event::Html(text) | Event::InlineHtml(text) => events.push(Event::Text(text)),
-            other => events.push(other),
+            other => led.push(other),
         }
     }
-    events
+    led
 }
 
 /// Where a link leads: an address as it is, the path of an item to its code in the book, if it is there.

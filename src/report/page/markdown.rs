@@ -4,9 +4,10 @@
 //! site is the file's name without a link.
 
 use super::table::framed;
+use crate::book::markup::{led, rows, text_of};
 use maud::{Markup, PreEscaped, html};
 use pulldown_cmark::html::push_html;
-use pulldown_cmark::{CowStr, Event, Options, Parser, Tag, TagEnd};
+use pulldown_cmark::{Event, Options, Parser, Tag, TagEnd};
 
 /// The files of the tree that are pages, and the pages.
 const PAGES: [(&str, &str); 8] = [
@@ -30,7 +31,7 @@ pub fn page(text: &str) -> Markup {
         let (end, markup) = match event {
             Event::Start(Tag::Heading { level, .. }) => {
                 let end = end_of(rest, TagEnd::Heading(*level));
-                heading = words(&rest[..end]);
+                heading = text_of(rest[..end].iter().cloned());
                 (end, set_heading(&rest[1..end - 1], *level as usize, &heading))
             }
             Event::Start(Tag::Table(_)) => {
@@ -79,15 +80,6 @@ fn end_of(events: &[Event], tag: TagEnd) -> usize {
     end.map_or(events.len(), |end| end + 1)
 }
 
-/// The words, without what sets them.
-fn words(events: &[Event]) -> String {
-    let text = events.iter().filter_map(|event| match event {
-        Event::Text(words) | Event::Code(words) => Some(&**words),
-        _ => None,
-    });
-    text.collect()
-}
-
 /// The anchor of a heading: its words in small letters, joined by hyphens.
 fn anchor(heading: &str) -> String {
     let kept: String = heading
@@ -113,11 +105,11 @@ fn set_heading(inside: &[Event], level: usize, heading: &str) -> Markup {
 /// A table whose first cells are the headers of their rows. Its caption is the heading under which it stands, which is there already for
 /// those who see it.
 fn set_table(events: &[Event], heading: &str) -> Markup {
-    let rows = rows(events);
+    let rows = rows(events.iter().cloned());
     let (header, body) = rows
         .split_first()
         .map_or((&[][..], &[][..]), |(header, body)| (&header[..], body));
-    let has_header = header.iter().any(|cell| !words(cell).is_empty());
+    let has_header = header.iter().any(|cell| !cell.is_empty());
     framed(
         heading,
         &html! {
@@ -138,49 +130,10 @@ fn set_table(events: &[Event], heading: &str) -> Markup {
     )
 }
 
-/// The cells of a table, row by row.
-fn rows<'a>(events: &[Event<'a>]) -> Vec<Vec<Vec<Event<'a>>>> {
-    let mut rows: Vec<Vec<Vec<Event>>> = Vec::new();
-    for event in events {
-        match event {
-            Event::Start(Tag::TableHead | Tag::TableRow) => rows.push(Vec::new()),
-            Event::Start(Tag::TableCell) => rows.last_mut().into_iter().for_each(|row| row.push(Vec::new())),
-            Event::Start(Tag::Table(_))
-            | Event::End(TagEnd::Table | TagEnd::TableHead | TagEnd::TableRow | TagEnd::TableCell) => {}
-            inside => {
-                if let Some(cell) = rows.last_mut().and_then(|row| row.last_mut()) {
-                    cell.push(inside.clone());
-                }
-            }
-        }
-    }
-    rows
-}
-
 /// Events as HTML, links led to the pages of the site.
 fn set(events: &[Event]) -> Markup {
-    let mut is_led = Vec::new();
-    let led = events.iter().filter_map(|event| match event {
-        Event::Start(Tag::Link {
-            link_type,
-            dest_url,
-            title,
-            id,
-        }) => {
-            let target = target(dest_url);
-            is_led.push(target.is_some());
-            Some(Event::Start(Tag::Link {
-                link_type: *link_type,
-                dest_url: CowStr::from(target?),
-                title: title.clone(),
-                id: id.clone(),
-            }))
-        }
-        Event::End(TagEnd::Link) => is_led.pop().unwrap_or(true).then(|| event.clone()),
-        other => Some(other.clone()),
-    });
     let mut text = String::new();
-    push_html(&mut text, led.collect::<Vec<_>>().into_iter());
+    push_html(&mut text, led(events.iter().cloned(), target).into_iter());
     PreEscaped(text)
 }
 
