@@ -322,17 +322,19 @@ impl ProblemFile {
                 kinds.push(name);
             }
         }
-        if self
-            .modes
-            .iter()
-            .any(|mode| mode.models.noise_cross_covariance.is_some())
-        {
+        if self.has_correlated_noises() {
             kinds.push(CORRELATED_NOISE);
         }
         if !self.conversions.is_empty() {
             kinds.push(STATE_CONVERSION);
         }
         kinds
+    }
+
+    /// Whether the noises of a mode and of the sensor have something in common.
+    pub(super) fn has_correlated_noises(&self) -> bool {
+        let mut modes = self.modes.iter();
+        modes.any(|mode| mode.models.noise_cross_covariance.is_some())
     }
 
     /// Whether what a value needs is there in a mode, apart from a detection.

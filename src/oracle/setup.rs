@@ -346,7 +346,7 @@ impl ProblemFile {
         number: fn(f64) -> T,
     ) -> Vec<Filter<T, Dyn, Dyn>> {
         let of_mode = |mode: &ModeFile| Some(matrix(mode.models.noise_cross_covariance.as_ref()?, number));
-        if self.modes.iter().all(|mode| of_mode(mode).is_none()) {
+        if !self.has_correlated_noises() {
             return filters;
         }
         let modes = self.modes.iter().enumerate();

@@ -59,12 +59,6 @@ fn has_matrices(problem: &ProblemFile) -> bool {
     problem.modes.iter().all(|mode| !mode.transition.is_empty())
 }
 
-/// Whether the noises of a mode and of the sensor have something in common, so that there is one sensor.
-fn has_shared_noise(problem: &ProblemFile) -> bool {
-    let mut modes = problem.modes.iter();
-    modes.any(|mode| mode.models.noise_cross_covariance.is_some())
-}
-
 /// Sometimes no mode leads to one of them, or one mode to another, or a mode has no probability at first.
 fn close_paths(draw: &mut Draw, problem: &mut ProblemFile) {
     let r = problem.modes.len();
@@ -140,7 +134,7 @@ fn change(draw: &mut Draw, problem: &mut ProblemFile) {
             problem.filter,
             FilterFile::FixedGain { .. } | FilterFile::Converted { .. }
         )
-        && !has_shared_noise(problem)
+        && !problem.has_correlated_noises()
     {
         add_sensor(draw, problem);
     }
