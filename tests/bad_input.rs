@@ -27,6 +27,7 @@ use nalgebra::{
     vector,
 };
 use proptest::prelude::*;
+use std::num::NonZeroUsize;
 use std::sync::Arc;
 
 // Problems
@@ -1364,6 +1365,20 @@ fn a_kalman_filter_needs_a_matrix_from_its_state_to_the_common_one() {
     );
     let scene = with_conversions(|conversions| conversions.list[0].map = function(3));
     assert_sentence(&scene, "`conversions[0].formulas` is 3 × 4 where 4 × 4 is needed");
+}
+
+#[test]
+fn a_filter_that_iterates_has_the_common_state() {
+    let twice = Filter::iterated(NonZeroUsize::new(2).unwrap());
+    let mut scene = with_conversions(|_| {});
+    scene.problem.filters = vec![Filter::extended(), twice.clone(), Filter::extended()];
+    assert_sentence(
+        &scene,
+        "`conversions[4]` is of a mode whose filter iterates; such a mode must have the problem's `state` (Granström, Willett and \
+         Bar-Shalom 2015)",
+    );
+    scene.problem.filters = vec![twice, Filter::extended(), Filter::extended()];
+    assert!(scene.filter().is_ok(), "the first mode has the common state");
 }
 
 #[test]
