@@ -8,13 +8,12 @@
 //!                                                                    └─ no detection ─▶ the prediction stays ──────┘
 //! ```
 
-use super::failure::{Cause, Failure, failure, not_definite};
+use super::failure::{Cause, Failure, check_measurement, check_slopes, failure, not_definite};
 use super::observer::Observer;
 use super::record::Quantity;
-use super::update::{linearised, update};
+use super::update::update;
 use super::{Equations, Initial, InvalidProblem, Problem, Step};
 use crate::matrix::{Holds, Shapes, all_finite, is_finite};
-use crate::model::PolarComponent;
 use crate::number::{Field, Real};
 use nalgebra::{Dim, OVector};
 
@@ -99,13 +98,7 @@ where
     /// A filter at step 0 whose problem may be wrong on purpose: what a variant of the filter is run with.
     pub(crate) fn unchecked(problem: Problem<T, N, M>, equations: Equations<T, N, M>, initial: &Initial<T, N>) -> Self {
         let has_covariances = problem.has_covariances();
-        let mut estimates = initial.modes.clone();
-        if !has_covariances {
-            // A covariance that nobody computes is no number: a zero would be taken for certainty.
-            for estimate in &mut estimates {
-                estimate.covariance.fill(T::undecided());
-            }
-        }
+        let estimates = problem.estimates_at_start(initial);
         let mut now = Step::initial(&estimates, &initial.mode_probabilities);
         now.combined.mean = (equations.combined_mean)(&problem, &now, &now, 0);
         if has_covariances {
@@ -263,7 +256,7 @@ where
         self.now.measurement = measurement.cloned();
         self.now.truth = self.truth.take();
         if let Some(z) = measurement {
-            self.check_measurement(z)?;
+            check_measurement(&self.problem, self.now.step, z)?;
         }
         let modes = self.problem.modes.len();
         self.mix(observer);
@@ -288,7 +281,7 @@ where
         }
         Err(failure(
             &self.problem,
-            &self.now,
+            self.now.step,
             None,
             "combined",
             Cause::EstimateNotFinite,
@@ -319,16 +312,18 @@ where
     fn predict(&mut self, j: usize, observer: &mut impl Observer<T, N, M>) -> Result<(), Failure> {
         let (e, problem, previous, now) = self.parts();
         let points = (e.mixed_points)(problem, previous, now, j)
-            .map_err(|pivot| not_definite(problem, now, j, Quantity::PredictedMean, "mixed covariance", pivot))?;
+            .map_err(|pivot| not_definite(problem, now.step, j, Quantity::PredictedMean, "mixed covariance", pivot))?;
         now.mixed_points.push(points);
         let points = (e.propagated_points)(problem, previous, now, j);
         now.propagated_points.push(points);
         now.predicted[j].mean = (e.predicted_mean)(problem, previous, now, j);
         observer.computed(Quantity::PredictedMean, j, now);
         let jacobian = (e.motion_jacobian)(problem, previous, now, j);
-        let has_slopes = jacobian.as_ref().map(all_finite);
+        check_slopes(problem, now.step, j, Quantity::MotionJacobian, jacobian.as_ref())?;
         now.motion_jacobians.push(jacobian);
-        linearised(problem, now, Quantity::MotionJacobian, j, has_slopes, observer)?;
+        if now.motion_jacobians[j].is_some() {
+            observer.computed(Quantity::MotionJacobian, j, now);
+        }
         if problem.has_covariances() {
             now.predicted[j].covariance = (e.predicted_covariance)(problem, previous, now, j);
             observer.computed(Quantity::PredictedCovariance, j, now);
@@ -360,7 +355,7 @@ where
         if !is_finite(&now.log_evidence) {
             return Err(failure(
                 problem,
-                now,
+                now.step,
                 None,
                 Quantity::ModeProbabilities.name(),
                 Cause::NoEvidence,
@@ -419,30 +414,5 @@ where
     /// What every equation is given.
     fn parts(&mut self) -> Parts<'_, T, N, M> {
         (&self.equations, &self.problem, &self.previous, &mut self.now)
-    }
-
-    /// A measurement is finite, its ranges are not negative, and its bearings are angles in radians.
-    fn check_measurement(&self, z: &OVector<T, M>) -> Result<(), Failure> {
-        let fail = |cause| Err(failure(&self.problem, &self.now, None, "measurement", cause));
-        let (found, expected) = (z.len(), self.problem.m().value());
-        if found != expected {
-            return fail(Cause::MeasurementLength { found, expected });
-        }
-        if !all_finite(z) {
-            return fail(Cause::MeasurementNotFinite);
-        }
-        let two_turns = T::pi() * T::integer(2);
-        for (component, value) in z.iter().enumerate() {
-            let sensor = &self.problem.sensor;
-            if sensor.reports(component) == Some(PolarComponent::Range) && *value < T::zero() {
-                let range = format!("{value:?}");
-                return fail(Cause::NegativeRange { range });
-            }
-            if sensor.is_angle(component) && (*value > two_turns || *value < -two_turns.clone()) {
-                let bearing = format!("{value:?}");
-                return fail(Cause::BearingOutOfRange { bearing });
-            }
-        }
-        Ok(())
     }
 }

@@ -1,8 +1,8 @@
 //! The table of the cycle's equations: one entry for each value of a step.
 //!
 //! An entry says which equation gives a field of [`Step`] from which other values. It sees the problem, the step before, the step so far
-//! and its mode; the wiring in [`super::cycle`] runs the entries in order. What depends on the kind of a mode's filter asks
-//! [`Problem::filter`] for it. The filter proper is [`Equations::standard`]; a *variant* is this table with some entries exchanged:
+//! and its mode; the wiring in [`super::cycle`] runs the entries in order. What depends on the kind of a mode's filter is asked in
+//! [`by_kind`]. The filter proper is [`Equations::standard`]; a *variant* is this table with some entries exchanged:
 //!
 //! ```
 //! use immaculate::imm::Equations;
@@ -14,17 +14,17 @@
 //! };
 //! ```
 
-use super::angles::{estimates_near, estimates_near_first, points_near, wrapped};
+use super::angles::{estimates_near, estimates_near_first, wrapped};
+use super::by_kind::{self, difference, seen};
 use super::probability;
-use super::problem::Interaction;
 use super::state_conversion::Reader;
 use super::{Problem, Step};
-use crate::filter::{Transform, Update, converted, correlated, cubature, extended, iterated, kalman, update};
+use crate::filter::update;
 use crate::gaussian::{log_density, mixture_covariance, mixture_mean};
 use crate::matrix::{Holds, NotPositiveDefinite, Shapes, check_positive_definite, ldl, quadratic_form};
-use crate::model::motion::Motion;
 use crate::number::{Field, Real};
 use nalgebra::{Dim, OMatrix, OVector};
+#[cfg(feature = "oracle")]
 use std::borrow::Cow;
 
 /// An equation: from the problem, the step before, the step so far, and the mode (0 for a value of all modes together).
@@ -56,27 +56,27 @@ where
     pub mixed_mean: Equation<T, N, M, OVector<T, N>>,
     /// P⁰ʲ, [`mixture_covariance`].
     pub mixed_covariance: Equation<T, N, M, OMatrix<T, N, N>>,
-    /// The points of the mixed estimate, [`cubature::points`]; none for a filter that draws none.
+    /// The points of the mixed estimate, [`cubature::points`](crate::filter::cubature::points); none for a filter that draws none.
     pub mixed_points: Equation<T, N, M, Factored<Points<T, N>>>,
-    /// The propagated points, [`cubature::propagated_point`].
+    /// The propagated points, [`cubature::propagated_point`](crate::filter::cubature::propagated_point).
     pub propagated_points: Equation<T, N, M, Points<T, N>>,
-    /// Predicted mean, [`kalman::predicted_mean`] or [`cubature::weighted_mean`].
+    /// Predicted mean, [`kalman::predicted_mean`](crate::filter::kalman::predicted_mean) or [`cubature::weighted_mean`](crate::filter::cubature::weighted_mean).
     pub predicted_mean: Equation<T, N, M, OVector<T, N>>,
-    /// F, [`extended::motion_jacobian`]; none for a filter that does not linearise the motion.
+    /// F, [`extended::motion_jacobian`](crate::filter::extended::motion_jacobian); none for a filter that does not linearise the motion.
     pub motion_jacobian: Equation<T, N, M, Option<OMatrix<T, N, N>>>,
-    /// Predicted covariance, [`kalman::predicted_covariance`] or [`cubature::weighted_covariance`].
+    /// Predicted covariance, [`kalman::predicted_covariance`](crate::filter::kalman::predicted_covariance) or [`cubature::weighted_covariance`](crate::filter::cubature::weighted_covariance).
     pub predicted_covariance: Equation<T, N, M, OMatrix<T, N, N>>,
     /// Mean of the combined prediction, [`mixture_mean`] under the predicted mode probabilities.
     pub combined_prediction_mean: Equation<T, N, M, OVector<T, N>>,
     /// Covariance of the combined prediction, [`mixture_covariance`].
     pub combined_prediction_covariance: Equation<T, N, M, OMatrix<T, N, N>>,
-    /// The measurement as a position, [`converted::converted_measurement`]; none where no filter converts.
+    /// The measurement as a position, [`converted::converted_measurement`](crate::filter::converted::converted_measurement); none where no filter converts.
     pub converted_measurement: OfMeasurement<T, N, M, Option<OVector<T, M>>>,
-    /// R^c, [`converted::converted_covariance`]; none where no filter converts.
+    /// R^c, [`converted::converted_covariance`](crate::filter::converted::converted_covariance); none where no filter converts.
     pub converted_covariance: OfMeasurement<T, N, M, Option<OMatrix<T, M, M>>>,
-    /// x_{N−1}, [`iterated::linearisation_point`]; none for a filter that does not iterate.
+    /// x_{N−1}, [`iterated::linearisation_point`](crate::filter::iterated::linearisation_point); none for a filter that does not iterate.
     pub linearisation_point: OfMeasurement<T, N, M, Factored<Iterate<T, N>>>,
-    /// The points of the prediction, [`cubature::points`]; none for a filter that draws none.
+    /// The points of the prediction, [`cubature::points`](crate::filter::cubature::points); none for a filter that draws none.
     pub predicted_points: Equation<T, N, M, Factored<Points<T, N>>>,
     /// The measurements of these points, [`Sensor::of`](crate::model::Sensor::of).
     pub measured_points: Equation<T, N, M, Points<T, M>>,
@@ -84,11 +84,12 @@ where
     pub predicted_measurement: Equation<T, N, M, OVector<T, M>>,
     /// ν, [`Sensor::difference`](crate::model::Sensor::difference).
     pub innovation: OfMeasurement<T, N, M, OVector<T, M>>,
-    /// H, [`extended::measurement_jacobian`], of the mode's own state; none for a filter that does not linearise the measurement.
+    /// H, [`extended::measurement_jacobian`](crate::filter::extended::measurement_jacobian), of the mode's own state; none for a filter that
+    /// does not linearise the measurement.
     pub measurement_jacobian: Equation<T, N, M, Option<OMatrix<T, M, N>>>,
-    /// S, [`kalman::innovation_covariance`] or [`cubature::innovation_covariance`].
+    /// S, [`kalman::innovation_covariance`](crate::filter::kalman::innovation_covariance) or [`cubature::innovation_covariance`](crate::filter::cubature::innovation_covariance).
     pub innovation_covariance: Equation<T, N, M, OMatrix<T, M, M>>,
-    /// C, [`kalman::cross_covariance`] or [`cubature::cross_covariance`].
+    /// C, [`kalman::cross_covariance`](crate::filter::kalman::cross_covariance) or [`cubature::cross_covariance`](crate::filter::cubature::cross_covariance).
     pub cross_covariance: Equation<T, N, M, OMatrix<T, N, M>>,
     /// W, [`update::gain`].
     pub gain: Equation<T, N, M, Factored<OMatrix<T, N, M>>>,
@@ -135,17 +136,10 @@ where
             predicted_mode_probability: |problem, previous, _, j| {
                 probability::predicted_mode_probability(&problem.chain, &previous.mode_probabilities, j)
             },
-            mixing_probabilities: |problem, previous, now, j| match &problem.interaction {
-                Interaction::Imm | Interaction::Converted(_) => {
-                    let (chain, probabilities) = (&problem.chain, &previous.mode_probabilities);
-                    let predicted = &now.predicted_mode_probabilities[j];
-                    let mixing = |i| probability::mixing_probability(chain, probabilities, predicted, i, j);
-                    (0..problem.modes.len()).map(mixing).collect()
-                }
-                Interaction::Unmixed => {
-                    let own = |i| if i == j { T::one() } else { T::zero() };
-                    (0..problem.modes.len()).map(own).collect()
-                }
+            mixing_probabilities: |problem, previous, now, j| {
+                let (before, predicted) = (&previous.mode_probabilities, &now.predicted_mode_probabilities[j]);
+                let mixing = |i| by_kind::mixing_probability(problem, before, predicted, i, j);
+                (0..problem.modes.len()).map(mixing).collect()
             },
             mixed_mean: |problem, previous, now, j| {
                 let estimates = estimates_near_first(problem, &previous.updated, Reader::Mode(j));
@@ -157,48 +151,15 @@ where
                 mixture_covariance(&now.mixing_probabilities[j], &estimates, mean)
             },
 
-            mixed_points: |problem, _, now, j| match &problem.filter(j).predict {
-                Transform::Exact | Transform::Linearised => Ok(Vec::new()),
-                Transform::Points(rule) => cubature::points(rule, &now.mixed[j]),
+            mixed_points: |problem, _, now, j| by_kind::mixed_points(problem, j, &now.mixed[j]),
+            propagated_points: |problem, _, now, j| by_kind::propagated_points(problem, j, &now.mixed_points[j]),
+            predicted_mean: |problem, _, now, j| {
+                by_kind::predicted_mean(problem, j, &now.mixed[j].mean, &now.propagated_points[j])
             },
-            propagated_points: |problem, _, now, j| {
-                let points = now.mixed_points[j].iter();
-                match &problem.modes[j].motion {
-                    Motion::Linear(f) => points.map(|point| cubature::propagated_point(f, point)).collect(),
-                    motion => points.map(|point| motion.of(point)).collect(),
-                }
-            },
-            predicted_mean: |problem, _, now, j| match &problem.filter(j).predict {
-                Transform::Exact | Transform::Linearised => match &problem.modes[j].motion {
-                    Motion::Linear(f) => kalman::predicted_mean(f, &now.mixed[j].mean),
-                    motion => motion.of(&now.mixed[j].mean),
-                },
-                Transform::Points(rule) if problem.angles_of(Reader::Mode(j)).is_empty() => {
-                    cubature::weighted_mean(&rule.weights, &now.propagated_points[j])
-                }
-                Transform::Points(rule) => {
-                    let centre = problem.modes[j].motion.of(&now.mixed[j].mean);
-                    let points = points_near(problem, j, &now.propagated_points[j], &centre);
-                    cubature::weighted_mean(&rule.weights, &points)
-                }
-            },
-            motion_jacobian: |problem, _, now, j| match &problem.filter(j).predict {
-                Transform::Linearised => Some(extended::motion_jacobian(&problem.modes[j].motion, &now.mixed[j].mean)),
-                Transform::Exact | Transform::Points(_) => None,
-            },
+            motion_jacobian: |problem, _, now, j| by_kind::motion_jacobian(problem, j, &now.mixed[j].mean),
             predicted_covariance: |problem, _, now, j| {
-                let q = &problem.modes[j].noise;
-                match &problem.filter(j).predict {
-                    Transform::Exact | Transform::Linearised => {
-                        let f = motion_matrix(problem, now, j);
-                        kalman::predicted_covariance(&f, &now.mixed[j].covariance, q)
-                    }
-                    Transform::Points(rule) => {
-                        let mean = &now.predicted[j].mean;
-                        let points = points_near(problem, j, &now.propagated_points[j], mean);
-                        cubature::weighted_covariance(&rule.covariance_weights, &points, mean, q)
-                    }
-                }
+                let (jacobian, points) = (now.motion_jacobians[j].as_ref(), &now.propagated_points[j]);
+                by_kind::predicted_covariance(problem, j, &now.mixed[j], jacobian, points, &now.predicted[j].mean)
             },
             combined_prediction_mean: |problem, _, now, _| {
                 let estimates = estimates_near_first(problem, &now.predicted, Reader::Common);
@@ -210,94 +171,58 @@ where
                 mixture_covariance(&now.predicted_mode_probabilities, &estimates, mean)
             },
 
-            converted_measurement: |problem, z, _, _| {
-                converted::converted_measurement(problem.conversion()?, &problem.sensor, z, &problem.measurement_noise)
-            },
-            converted_covariance: |problem, z, _, _| {
-                converted::converted_covariance(problem.conversion()?, &problem.sensor, z, &problem.measurement_noise)
-            },
-            linearisation_point: |problem, z, now, j| match &problem.filter(j).update {
-                Update::Iterated(times) => {
-                    let (predicted, noise) = (&now.predicted[j], noise(problem, now, j));
-                    iterated::linearisation_point(*times, &problem.sensor, predicted, z, noise)
-                }
-                _ => Ok(None),
-            },
-            predicted_points: |problem, _, now, j| match &problem.filter(j).update {
-                Update::By(Transform::Points(rule)) => cubature::points(rule, &now.predicted[j]),
-                _ => Ok(Vec::new()),
-            },
+            converted_measurement: |problem, z, _, _| by_kind::converted_measurement(problem, z),
+            converted_covariance: |problem, z, _, _| by_kind::converted_covariance(problem, z),
+            linearisation_point: |problem, z, now, j| by_kind::linearisation_point(problem, j, &now.predicted[j], z),
+            predicted_points: |problem, _, now, j| by_kind::predicted_points(problem, j, &now.predicted[j]),
             measured_points: |problem, _, now, j| {
-                now.predicted_points[j]
-                    .iter()
-                    .map(|point| seen(problem, point, j))
-                    .collect()
+                let points = now.predicted_points[j].iter();
+                points.map(|point| seen(problem, point, j)).collect()
             },
-            predicted_measurement: |problem, _, now, j| match &problem.filter(j).update {
-                Update::By(Transform::Points(rule)) => {
-                    let centre = seen(problem, &now.predicted[j].mean, j);
-                    problem.sensor.mean(&rule.weights, &now.measured_points[j], &centre)
-                }
-                _ => match &now.linearisation_points[j] {
-                    Some(at) => iterated::measurement_of_the_tangent(&problem.sensor, at, &now.predicted[j].mean),
-                    None => seen(problem, &now.predicted[j].mean, j),
-                },
+            predicted_measurement: |problem, _, now, j| {
+                let (at, values) = (now.linearisation_points[j].as_ref(), &now.measured_points[j]);
+                by_kind::predicted_measurement(problem, j, &now.predicted[j].mean, at, values)
             },
             innovation: |problem, z, now, j| {
                 difference(problem, used(problem, z, now, j), &now.predicted_measurements[j], j)
             },
             measurement_jacobian: |problem, _, now, j| {
-                let at = now.linearisation_points[j].as_ref().unwrap_or(&now.predicted[j].mean);
-                let linearises = problem.filter(j).linearises_the_measurement();
-                linearises.then(|| problem.slopes_of_measurement(j, at))
+                let at = now.linearisation_points[j].as_ref();
+                by_kind::measurement_jacobian(problem, j, &now.predicted[j].mean, at)
             },
-            innovation_covariance: |problem, _, now, j| match &problem.filter(j).update {
-                Update::By(Transform::Points(rule)) => cubature::innovation_covariance(
-                    &problem.sensor,
-                    &rule.covariance_weights,
+            innovation_covariance: |problem, _, now, j| {
+                by_kind::innovation_covariance(
+                    problem,
+                    j,
+                    &now.predicted[j].covariance,
+                    now.measurement_jacobians[j].as_ref(),
                     &now.measured_points[j],
                     &now.predicted_measurements[j],
-                    &problem.measurement_noise,
-                ),
-                Update::Given(given) => given.innovation_covariance.clone(),
-                Update::By(Transform::Exact | Transform::Linearised) | Update::Iterated(_) | Update::Converted(_) => {
-                    let (h, noise) = (measurement_matrix(problem, now, j), noise(problem, now, j));
-                    let covariance = &now.predicted[j].covariance;
-                    match &problem.filter(j).noise_cross_covariance {
-                        Some(of_noises) => correlated::innovation_covariance(&h, covariance, noise, of_noises),
-                        None => kalman::innovation_covariance(&h, covariance, noise),
-                    }
-                }
+                    noise(problem, now, j),
+                )
             },
             cross_covariance: |problem, _, now, j| {
-                let (filter, covariance) = (problem.filter(j), &now.predicted[j].covariance);
-                match (&filter.update, &filter.noise_cross_covariance) {
-                    (Update::By(Transform::Points(rule)), _) => cubature::cross_covariance(
-                        &problem.sensor,
-                        &rule.covariance_weights,
-                        &now.predicted_points[j],
-                        &now.predicted[j].mean,
-                        &now.measured_points[j],
-                        &now.predicted_measurements[j],
-                    ),
-                    (_, Some(of_noises)) => {
-                        correlated::cross_covariance(covariance, &measurement_matrix(problem, now, j), of_noises)
-                    }
-                    (_, None) => kalman::cross_covariance(covariance, &measurement_matrix(problem, now, j)),
-                }
+                by_kind::cross_covariance(
+                    problem,
+                    j,
+                    &now.predicted[j],
+                    now.measurement_jacobians[j].as_ref(),
+                    &now.predicted_points[j],
+                    &now.measured_points[j],
+                    &now.predicted_measurements[j],
+                )
             },
 
             gain: |problem, _, now, j| {
-                if let Update::Given(given) = &problem.filter(j).update {
-                    return Ok(given.gain.clone());
+                if let Some(given) = by_kind::given_gain(problem, j) {
+                    return Ok(given.clone());
                 }
                 let factors = ldl(&now.innovation_covariances[j]);
                 check_positive_definite(&factors)?;
                 Ok(update::gain(&now.cross_covariances[j], &factors))
             },
             updated_mean: |problem, _, now, j| {
-                let mean = update::updated_mean(&now.predicted[j].mean, &now.gains[j], &now.innovations[j]);
-                wrapped(problem.angles_of(Reader::Mode(j)), mean)
+                by_kind::updated_mean(problem, j, &now.predicted[j].mean, &now.gains[j], &now.innovations[j])
             },
             updated_covariance: |_, _, now, j| {
                 let innovation_covariance = &now.innovation_covariances[j];
@@ -352,6 +277,7 @@ where
 }
 
 /// F as the filter of mode j uses it, or would: the matrix of its motion, or the Jacobian of a function.
+#[cfg(feature = "oracle")]
 pub(crate) fn motion_matrix<'a, T: Real, N: Dim, M: Dim>(
     problem: &'a Problem<T, N, M>,
     now: &'a Step<T, N, M>,
@@ -360,16 +286,12 @@ pub(crate) fn motion_matrix<'a, T: Real, N: Dim, M: Dim>(
 where
     Shapes: Holds<N, M>,
 {
-    match now.motion_jacobians.get(j) {
-        Some(Some(jacobian)) => Cow::Borrowed(jacobian),
-        _ => match &problem.modes[j].motion {
-            motion @ Motion::Function { .. } => Cow::Owned(extended::motion_jacobian(motion, &now.mixed[j].mean)),
-            motion => motion.matrix(),
-        },
-    }
+    let jacobian = now.motion_jacobians.get(j).and_then(Option::as_ref);
+    by_kind::motion_matrix(problem, j, &now.mixed[j].mean, jacobian)
 }
 
 /// H as the filter of mode j uses it: the Jacobian of the measurement where it linearises, else the matrix [`Problem::h`].
+#[cfg(feature = "oracle")]
 pub(crate) fn measurement_matrix<'a, T: Real, N: Dim, M: Dim>(
     problem: &'a Problem<T, N, M>,
     now: &'a Step<T, N, M>,
@@ -378,26 +300,8 @@ pub(crate) fn measurement_matrix<'a, T: Real, N: Dim, M: Dim>(
 where
     Shapes: Holds<N, M>,
 {
-    match now.measurement_jacobians.get(j) {
-        Some(Some(jacobian)) => Cow::Borrowed(jacobian),
-        _ => problem.h_of(j),
-    }
-}
-
-/// What the filter of mode j expects to measure of a state: h(x), or the position, to which range and bearing are converted.
-pub(crate) fn seen<T: Real, N: Dim, M: Dim>(
-    problem: &Problem<T, N, M>,
-    state: &OVector<T, N>,
-    j: usize,
-) -> OVector<T, M>
-where
-    Shapes: Holds<N, M>,
-{
-    let state = &*problem.in_common_state(j, state);
-    match &problem.filter(j).update {
-        Update::Converted(_) => &*problem.h() * state,
-        _ => problem.sensor.of(state),
-    }
+    let jacobian = now.measurement_jacobians.get(j).and_then(Option::as_ref);
+    by_kind::measurement_matrix(problem, j, jacobian)
 }
 
 /// What the filter of mode j uses of a measurement: z itself, or the converted measurement.
@@ -410,26 +314,7 @@ pub(crate) fn used<'a, T: Real, N: Dim, M: Dim>(
 where
     Shapes: Holds<N, M>,
 {
-    match (&problem.filter(j).update, &now.converted_measurement) {
-        (Update::Converted(_), Some(converted)) => converted,
-        _ => z,
-    }
-}
-
-/// How far two measurements are apart for the filter of mode j: angles are wrapped, and a converted measurement has none.
-pub(crate) fn difference<T: Real, N: Dim, M: Dim>(
-    problem: &Problem<T, N, M>,
-    a: &OVector<T, M>,
-    b: &OVector<T, M>,
-    j: usize,
-) -> OVector<T, M>
-where
-    Shapes: Holds<N, M>,
-{
-    match &problem.filter(j).update {
-        Update::Converted(_) => a - b,
-        _ => problem.sensor.difference(a, b),
-    }
+    by_kind::used(problem, j, z, now.converted_measurement.as_ref())
 }
 
 /// The covariance of the noise of what the filter of mode j uses: R, or that of the converted measurement.
@@ -441,8 +326,10 @@ pub(crate) fn noise<'a, T: Real, N: Dim, M: Dim>(
 where
     Shapes: Holds<N, M>,
 {
-    match (&problem.filter(j).update, &now.converted_covariance) {
-        (Update::Converted(_), Some(converted)) => converted,
-        _ => &problem.measurement_noise,
-    }
+    by_kind::used(
+        problem,
+        j,
+        &problem.measurement_noise,
+        now.converted_covariance.as_ref(),
+    )
 }

@@ -1,10 +1,11 @@
 //! Why a step could not be computed: the step, the mode, the value, and the cause.
 
+use super::Problem;
 use super::record::Quantity;
-use super::{Problem, Step};
-use crate::matrix::{Holds, NotPositiveDefinite, Shapes};
-use crate::number::Field;
-use nalgebra::Dim;
+use crate::matrix::{Holds, NotPositiveDefinite, Shapes, all_finite};
+use crate::model::PolarComponent;
+use crate::number::{Field, Real};
+use nalgebra::{DefaultAllocator, Dim, OMatrix, OVector, allocator::Allocator};
 
 /// A step that could not be computed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -68,7 +69,7 @@ pub enum Cause {
 /// A value of mode j, or of all modes, that could not be computed.
 pub(super) fn failure<T: Field, N: Dim, M: Dim>(
     problem: &Problem<T, N, M>,
-    now: &Step<T, N, M>,
+    step: usize,
     j: Option<usize>,
     value: &'static str,
     cause: Cause,
@@ -77,7 +78,7 @@ where
     Shapes: Holds<N, M>,
 {
     Failure {
-        step: now.step,
+        step,
         mode: j.map_or_else(|| "all".into(), |j| problem.modes[j].name.clone()),
         value,
         cause,
@@ -87,7 +88,7 @@ where
 /// A value of mode j that needs a covariance which is not positive definite.
 pub(super) fn not_definite<T: Field, N: Dim, M: Dim>(
     problem: &Problem<T, N, M>,
-    now: &Step<T, N, M>,
+    step: usize,
     j: usize,
     value: Quantity,
     what: &'static str,
@@ -98,9 +99,67 @@ where
 {
     failure(
         problem,
-        now,
+        step,
         Some(j),
         value.name(),
         Cause::NotPositiveDefinite { what, pivot },
     )
+}
+
+/// A measurement is finite, its ranges are not negative, and its bearings are angles in radians.
+///
+/// # Errors
+///
+/// [`Failure`] that says what is wrong with it.
+pub(super) fn check_measurement<T: Real, N: Dim, M: Dim>(
+    problem: &Problem<T, N, M>,
+    step: usize,
+    z: &OVector<T, M>,
+) -> Result<(), Failure>
+where
+    Shapes: Holds<N, M>,
+{
+    let fail = |cause| Err(failure(problem, step, None, "measurement", cause));
+    let (found, expected) = (z.len(), problem.m().value());
+    if found != expected {
+        return fail(Cause::MeasurementLength { found, expected });
+    }
+    if !all_finite(z) {
+        return fail(Cause::MeasurementNotFinite);
+    }
+    let two_turns = T::pi() * T::integer(2);
+    for (component, value) in z.iter().enumerate() {
+        let sensor = &problem.sensor;
+        if sensor.reports(component) == Some(PolarComponent::Range) && *value < T::zero() {
+            let range = format!("{value:?}");
+            return fail(Cause::NegativeRange { range });
+        }
+        if sensor.is_angle(component) && (*value > two_turns || *value < -two_turns.clone()) {
+            let bearing = format!("{value:?}");
+            return fail(Cause::BearingOutOfRange { bearing });
+        }
+    }
+    Ok(())
+}
+
+/// The Jacobian of mode j, if its filter has one, is finite.
+///
+/// # Errors
+///
+/// [`Failure`] where a function has no slope.
+pub(super) fn check_slopes<T: Real, N: Dim, M: Dim, R: Dim, C: Dim>(
+    problem: &Problem<T, N, M>,
+    step: usize,
+    j: usize,
+    value: Quantity,
+    jacobian: Option<&OMatrix<T, R, C>>,
+) -> Result<(), Failure>
+where
+    Shapes: Holds<N, M>,
+    DefaultAllocator: Allocator<R, C>,
+{
+    match jacobian {
+        Some(jacobian) if !all_finite(jacobian) => Err(failure(problem, step, Some(j), value.name(), Cause::NoSlope)),
+        _ => Ok(()),
+    }
 }

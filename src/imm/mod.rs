@@ -31,6 +31,7 @@
 //! Example: a whole step with two modes, value by value, is on the [front page](crate); [`Imm`] has one with one mode.
 
 pub mod angles;
+pub(crate) mod by_kind;
 mod check;
 mod check_states;
 pub mod cycle;

@@ -186,6 +186,17 @@ where
         self.filters.iter().all(Filter::has_covariances)
     }
 
+    /// The initial estimates. A covariance that nobody computes is no number: a zero would be taken for certainty.
+    pub(super) fn estimates_at_start(&self, initial: &Initial<T, N>) -> Vec<Gaussian<T, N>> {
+        let mut estimates = initial.modes.clone();
+        if !self.has_covariances() {
+            for estimate in &mut estimates {
+                estimate.covariance.fill(T::undecided());
+            }
+        }
+        estimates
+    }
+
     /// How the measurement is converted, if a filter does.
     pub fn conversion(&self) -> Option<Conversion> {
         self.filters.iter().find_map(Filter::conversion)

@@ -4,11 +4,11 @@
 //! x_{N−1} ─▶ points ─▶ ẑ ─▶ ν ─▶ H ─▶ S ─▶ C ─▶ gain ─▶ updated mean, covariance ─▶ ln L, νᵀ S⁻¹ ν
 //! ```
 
-use super::failure::{Cause, Failure, failure, not_definite};
+use super::failure::{Failure, check_slopes, not_definite};
 use super::observer::Observer;
 use super::record::Quantity;
 use super::{Equations, Problem, Step};
-use crate::matrix::{Holds, Shapes, all_finite};
+use crate::matrix::{Holds, Shapes};
 use crate::number::Real;
 use nalgebra::{Dim, OVector};
 
@@ -30,12 +30,12 @@ where
     Shapes: Holds<N, M>,
 {
     let point = (e.linearisation_point)(problem, z, now, j)
-        .map_err(|pivot| not_definite(problem, now, j, Quantity::Gain, "innovation covariance", pivot))?;
+        .map_err(|pivot| not_definite(problem, now.step, j, Quantity::Gain, "innovation covariance", pivot))?;
     now.linearisation_points.push(point);
     let points = (e.predicted_points)(problem, previous, now, j).map_err(|pivot| {
         not_definite(
             problem,
-            now,
+            now.step,
             j,
             Quantity::PredictedMeasurement,
             "predicted covariance",
@@ -52,9 +52,11 @@ where
     now.innovations.push(innovation);
     observer.computed(Quantity::Innovation, j, now);
     let jacobian = (e.measurement_jacobian)(problem, previous, now, j);
-    let has_slopes = jacobian.as_ref().map(all_finite);
+    check_slopes(problem, now.step, j, Quantity::MeasurementJacobian, jacobian.as_ref())?;
     now.measurement_jacobians.push(jacobian);
-    linearised(problem, now, Quantity::MeasurementJacobian, j, has_slopes, observer)?;
+    if now.measurement_jacobians[j].is_some() {
+        observer.computed(Quantity::MeasurementJacobian, j, now);
+    }
     let covariance = (e.innovation_covariance)(problem, previous, now, j);
     now.innovation_covariances.push(covariance);
     observer.computed(Quantity::InnovationCovariance, j, now);
@@ -64,7 +66,7 @@ where
         observer.computed(Quantity::CrossCovariance, j, now);
     }
     let gain = (e.gain)(problem, previous, now, j)
-        .map_err(|pivot| not_definite(problem, now, j, Quantity::Gain, "innovation covariance", pivot))?;
+        .map_err(|pivot| not_definite(problem, now.step, j, Quantity::Gain, "innovation covariance", pivot))?;
     now.gains.push(gain);
     observer.computed(Quantity::Gain, j, now);
     correct(e, problem, previous, now, j, observer);
@@ -94,28 +96,4 @@ fn correct<T: Real, N: Dim, M: Dim>(
     let square = (e.nis)(problem, previous, now, j);
     now.nis.push(square);
     observer.computed(Quantity::Nis, j, now);
-}
-
-/// Tells the observer of a Jacobian, if there is one; `has_slopes` says whether its entries are finite.
-///
-/// # Errors
-///
-/// [`Failure`] where a function has no slope.
-pub(super) fn linearised<T: Real, N: Dim, M: Dim>(
-    problem: &Problem<T, N, M>,
-    now: &mut Step<T, N, M>,
-    value: Quantity,
-    j: usize,
-    has_slopes: Option<bool>,
-    observer: &mut impl Observer<T, N, M>,
-) -> Result<(), Failure>
-where
-    Shapes: Holds<N, M>,
-{
-    match has_slopes {
-        None => {}
-        Some(true) => observer.computed(value, j, now),
-        Some(false) => return Err(failure(problem, now, Some(j), value.name(), Cause::NoSlope)),
-    }
-    Ok(())
 }

@@ -8,7 +8,7 @@ use super::tree::{Given, Leaf, Of, Tree, Value};
 use super::value::{Matrix, Number, Term, With, by_rows};
 use crate::filter::Update;
 use crate::filter::extended::motion_jacobian;
-use crate::imm::equations::seen;
+use crate::imm::by_kind::seen;
 use crate::imm::state_conversion::Reader;
 use crate::imm::{Interaction, Problem, Quantity, Step};
 use crate::model::Sensor;
