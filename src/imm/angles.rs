@@ -59,6 +59,7 @@ where
 }
 
 /// A mean with its angles in (−π, π].
+#[inline(always)]
 pub(crate) fn wrapped<T: Real, N: Dim>(angles: &[usize], mut mean: OVector<T, N>) -> OVector<T, N>
 where
     Shapes: Holds<N>,
@@ -70,6 +71,7 @@ where
 }
 
 /// The estimates of all modes in the state of a reader, their angles in the turn of the first one.
+#[inline(always)]
 pub(crate) fn estimates_near_first<'a, T: Real, N: Dim, M: Dim>(
     problem: &Problem<T, N, M>,
     estimates: &'a [Gaussian<T, N>],
@@ -83,6 +85,7 @@ where
 }
 
 /// The estimates of all modes in the state of a reader, their angles in the turn of a reference.
+#[inline(always)]
 pub(crate) fn estimates_near<'a, T: Real, N: Dim, M: Dim>(
     problem: &Problem<T, N, M>,
     estimates: &'a [Gaussian<T, N>],
@@ -97,6 +100,7 @@ where
 }
 
 /// Estimates with their angles in the turn of a reference, or of the first of them; as they are where there is no angle.
+#[inline(always)]
 fn in_one_turn<'a, T: Real, N: Dim>(
     angles: &[usize],
     estimates: Cow<'a, [Gaussian<T, N>]>,
@@ -117,6 +121,7 @@ where
 }
 
 /// Points of mode j with their angles in the turn of a reference; as they are where there is no angle.
+#[inline(always)]
 pub(crate) fn points_near<'a, T: Real, N: Dim, M: Dim>(
     problem: &Problem<T, N, M>,
     j: usize,

@@ -107,6 +107,16 @@ pub enum InvalidProblem {
         "`filters` gives gains where the run computes them, or the reverse; begin a new run instead (derbez2000 (2))"
     )]
     OtherKind,
+    /// A plain filter was given another number of modes than it is built for.
+    #[error(
+        "`modes` has {found} entries where the filter is built for {expected}; give it as many modes as `MODES` says"
+    )]
+    OtherModes {
+        /// The modes of the problem.
+        found: usize,
+        /// `MODES`.
+        expected: usize,
+    },
     /// A filter with a given gain is to draw points.
     #[error(
         "`filters` has a given gain and draws points; without a covariance there is nothing to draw them from (derbez2000 (2))"

@@ -167,12 +167,14 @@ where
     }
 
     /// The filter of mode j.
+    #[inline(always)]
     pub fn filter(&self, j: usize) -> &Filter<T, N, M> {
         self.filters.get(j).unwrap_or(&self.filters[0])
     }
 
     /// The measurement matrix H: of a linear sensor its own, of range and bearing the matrix that takes the position out of the state,
     /// which is what filters see that convert the measurement. A function has none, and every entry is undecided.
+    #[inline(always)]
     pub fn h(&self) -> Cow<'_, OMatrix<T, M, N>> {
         match &self.sensor {
             Sensor::Linear(h) => Cow::Borrowed(h),
@@ -182,6 +184,7 @@ where
     }
 
     /// Whether the filters have covariances of the state; those with given gains have none.
+    #[inline(always)]
     pub fn has_covariances(&self) -> bool {
         self.filters.iter().all(Filter::has_covariances)
     }

@@ -124,6 +124,7 @@ where
     Shapes: Holds<N, M>,
 {
     /// How the estimate of a mode is read; `None` where both states are the same.
+    #[inline(always)]
     pub fn state_conversion(&self, from: usize, to: Reader) -> Option<&StateConversion<T, N>> {
         let Interaction::Converted(conversions) = &self.interaction else {
             return None;
@@ -133,6 +134,7 @@ where
     }
 
     /// Which entries of a reader's state are angles.
+    #[inline(always)]
     pub fn angles_of(&self, reader: Reader) -> &[usize] {
         match (&self.interaction, reader) {
             (Interaction::Converted(conversions), Reader::Mode(j)) => &conversions.angles[j],
@@ -141,6 +143,7 @@ where
     }
 
     /// A state of mode j in the common state, in which the sensor's function is written.
+    #[inline(always)]
     pub fn in_common_state<'a>(&self, j: usize, state: &'a OVector<T, N>) -> Cow<'a, OVector<T, N>> {
         match self.state_conversion(j, Reader::Common) {
             Some(conversion) => Cow::Owned(conversion.map.of(state)),
@@ -160,6 +163,7 @@ where
     }
 
     /// The matrix of what the filter of mode j measures of its state, H C, as [`Problem::h`] is that of the common state.
+    #[inline(always)]
     pub(crate) fn h_of(&self, j: usize) -> Cow<'_, OMatrix<T, M, N>> {
         match self.state_conversion(j, Reader::Common) {
             Some(conversion) => Cow::Owned(&*self.h() * &*conversion.map.matrix()),
@@ -169,6 +173,7 @@ where
 }
 
 /// The estimates of all modes in the state of a reader; as they are where there are no conversions.
+#[inline(always)]
 pub(crate) fn estimates_read<'a, T: Real, N: Dim, M: Dim>(
     problem: &Problem<T, N, M>,
     estimates: &'a [Gaussian<T, N>],

@@ -425,6 +425,7 @@ fn of_problem(error: &InvalidProblem) -> Invalid {
         | InvalidProblem::SomeGiven
         | InvalidProblem::CorrelationWithoutSlopes { .. }
         | InvalidProblem::OtherKind
+        | InvalidProblem::OtherModes { .. }
         | InvalidProblem::NothingToDrawFrom
         | InvalidProblem::TwoConversions
         | InvalidProblem::NotRangeAndBearing
