@@ -15,10 +15,12 @@
 //! | [`Enclosure`]                         | [`Real`]                  | certified digits, and inequalities as theorems  |
 //! | [`RandomRounding`]                    | [`Real`]                  | how much of a difference is only arithmetic     |
 //! | [`Dual`] over another                 | that of the other         | derivatives, proven or certified                |
+//! | [`Gradient`] over another             | that of the other         | all derivatives at once                         |
+//! | [`Interval`]                          | [`Real`]                  | bounds in doubles: fast, and not narrow         |
 //!
 //! Reading order: the three traits here; [`Rational`], [`Surd`], [`RationalFunction`] (with [`Polynomial`]), which are exact;
-//! [`Enclosure`], which knows how far it is off, and the doubles, which do not; [`Dual`] and [`RandomRounding`], which say something
-//! about an evaluation besides its value.
+//! [`Enclosure`] and [`Interval`], which know how far they are off, and the doubles, which do not; [`Dual`], [`Gradient`] and
+//! [`RandomRounding`], which say something about an evaluation besides its value.
 //!
 //! Three traits say what an equation needs, and an equation has the weakest bound it can live with:
 //! [`Field`] (+ − × ÷), [`Roots`] (the square roots of rationals, all that cubature points need) and [`Real`]
@@ -50,6 +52,8 @@ mod decimal;
 mod dual;
 mod enclosure;
 mod float;
+mod gradient;
+mod interval;
 mod operators;
 mod polynomial;
 mod radicals;
@@ -60,6 +64,8 @@ mod surd;
 
 pub use dual::Dual;
 pub use enclosure::Enclosure;
+pub use gradient::Gradient;
+pub use interval::Interval;
 pub use polynomial::Polynomial;
 pub use random_rounding::RandomRounding;
 pub use rational::Rational;

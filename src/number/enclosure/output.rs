@@ -58,6 +58,23 @@ impl Enclosure {
         (ball.is_exact() || ball.upper().to_decimal(digits)? == low).then_some(low)
     }
 
+    /// The middle itself, with radius zero: a number of as many bits as the enclosure has. [`Enclosure::width`] bounds what it leaves out.
+    ///
+    /// Example: a third in 100 bits is the point that it was rounded to.
+    ///
+    /// ```
+    /// use immaculate::number::{Enclosure, Field};
+    ///
+    /// let third = Enclosure::with_precision(100, || Enclosure::integer(1) / Enclosure::integer(3));
+    /// let centre = third.centre();
+    /// assert!(centre.width() == 0.0 && third.width() > 0.0 && third.contains(&centre.lower()));
+    /// ```
+    #[must_use]
+    pub fn centre(&self) -> Self {
+        let ball = self.ball.as_ref().map(|ball| Ball::exact(ball.middle.clone()));
+        Self { ball }
+    }
+
     /// The double nearest to the middle of the enclosure; NaN if undecided.
     pub fn middle(&self) -> f64 {
         self.ball.as_ref().map_or(f64::NAN, |ball| ball.middle.nearest_double())
