@@ -2,9 +2,12 @@
 //!
 //! After this file the reader knows the first promise of the cases. The equations are evaluated in [`Enclosure`] on the exact inputs of the
 //! file. If every number of the trace is enclosed so narrowly that one double is the nearest to all that the enclosure holds, these doubles
-//! are the trace; if not, or if a comparison cannot be decided, it is done again with twice the bits.
+//! are the trace; if not, or if a comparison cannot be decided, it is done again with twice the bits. Long runs, for which that would be
+//! thousands of bits, are carried from step to step instead: [`ellipsoid`](super::ellipsoid).
 
+use super::carried::Numbers;
 use super::invalid::{Class, Invalid};
+use super::long_run::{LONGEST_PLAIN, LongRun, MOST_BITS_CARRIED, carry, is_long};
 use super::noise;
 use super::problem::ProblemFile;
 use super::scale::scales;
@@ -41,6 +44,19 @@ pub enum NotCertified {
     },
 }
 
+impl NotCertified {
+    /// The same of a run that enclosures alone were tried for, since it was not carried.
+    fn after(self, stopped: &str) -> Self {
+        match self {
+            Self::Undecided { reason, bits } => Self::Undecided {
+                reason: format!("{reason}; nor can the run be carried step by step: {stopped}"),
+                bits,
+            },
+            invalid @ Self::Invalid(_) => invalid,
+        }
+    }
+}
+
 /// A certified trace.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Certified {
@@ -56,7 +72,8 @@ pub struct Certified {
     pub digits: u32,
 }
 
-/// Certifies a problem's trace, with more and more bits.
+/// Certifies a problem's trace, with more and more bits. Runs of more than a hundred steps are carried from step to step, where that can be
+/// done: their time is in proportion to the steps.
 ///
 /// Example: A published problem; c₀ = Σᵢ pᵢ₀ μᵢ of step 1 by hand, from the numbers of the file.
 ///
@@ -75,10 +92,18 @@ pub struct Certified {
 ///
 /// [`NotCertified`] when the problem is wrong or the most bits are not enough.
 pub fn certify(problem: &ProblemFile) -> Result<Certified, NotCertified> {
-    certify_from(problem, FIRST_BITS)
+    problem.check()?;
+    if !is_long(problem) {
+        return certify_from(problem, FIRST_BITS);
+    }
+    let mut long = LongRun::of(problem);
+    match long.carry(problem)?.stopped {
+        None => with_noise(problem, long.trace, long.bits, digits(long.widest)),
+        Some(stopped) => certify_from(problem, FIRST_BITS).map_err(|error| error.after(&stopped)),
+    }
 }
 
-/// As [`certify`], with so many bits at first.
+/// As [`certify`], by enclosures alone, with so many bits at first.
 ///
 /// # Errors
 ///
@@ -88,13 +113,17 @@ pub fn certify_from(problem: &ProblemFile, first_bits: u32) -> Result<Certified,
     with_more_and_more_bits(first_bits, |bits| certify_with(problem, bits)).map(|(certified, _)| certified)
 }
 
-/// The bits with which certification goes as far as it does: some ten seconds for a run of many steps.
+/// The bits with which enclosures alone go as far as they do, for runs that cannot be carried: some ten seconds.
 const BITS_OF_A_PREFIX: u32 = 2048;
+
+/// So many steps of a longer run are certified where nobody asked for all: some minutes.
+const MOST_STEPS_CARRIED: usize = 10_000;
 
 /// The expected trace of a problem of any length: certified for the steps that are returned, in doubles for those after them.
 ///
-/// Twice as many steps are tried as before, until some do not certify with 2048 bits. No value of the doubles is proven; their
-/// rounding noise, by which they are judged, is measured as that of the others is.
+/// A run of more than a hundred steps is carried from step to step, up to 10 000. Where that does not lead to the end, and for shorter runs, twice as many
+/// steps are tried as before, until some do not certify with 2048 bits. No value of the doubles is proven; their rounding noise, by which
+/// they are judged, is measured as that of the others is.
 ///
 /// # Errors
 ///
@@ -112,6 +141,19 @@ pub fn certified_as_far_as_it_goes(problem: &ProblemFile) -> Result<(Trace, usiz
     let mut trace = in_doubles.in_doubles();
     let all = problem.measurements.len();
     let (mut certified, mut bits) = (0, FIRST_BITS);
+    if is_long(problem) {
+        let mut beginning = problem.clone();
+        beginning.measurements.truncate(MOST_STEPS_CARRIED);
+        let mut long = LongRun {
+            trace,
+            ..LongRun::of(&beginning)
+        };
+        certified = long.carry(&beginning)?.steps;
+        trace = long.trace;
+        if certified > LONGEST_PLAIN {
+            return Ok((trace, certified));
+        }
+    }
     while certified < all && bits <= BITS_OF_A_PREFIX {
         let steps = (2 * certified).max(8).min(all);
         let mut beginning = problem.clone();
@@ -139,7 +181,7 @@ pub fn certified_as_far_as_it_goes(problem: &ProblemFile) -> Result<(Trace, usiz
 /// Tries with so many bits, then with twice as many until an attempt is decided; what it gives, and the bits.
 fn with_more_and_more_bits<V>(
     first_bits: u32,
-    attempt: impl Fn(u32) -> Result<V, NotCertified>,
+    mut attempt: impl FnMut(u32) -> Result<V, NotCertified>,
 ) -> Result<(V, u32), NotCertified> {
     let mut bits = first_bits;
     loop {
@@ -170,6 +212,11 @@ fn certify_with(problem: &ProblemFile, bits: u32) -> Result<Certified, NotCertif
     let (trace, digits) = Enclosure::with_precision(bits, || {
         nearest(problem, &enclosed(problem, undecided)?).map_err(undecided)
     })?;
+    with_noise(problem, trace, bits, digits)
+}
+
+/// A certified trace with its scale and noise.
+fn with_noise(problem: &ProblemFile, trace: Trace, bits: u32, digits: u32) -> Result<Certified, NotCertified> {
     let scale = scales(problem, &trace);
     let unit_roundoff = f64::EPSILON / 2.0;
     let noise = noise::spread(&trace, unit_roundoff, noise::RUNS, |_| {
@@ -190,31 +237,51 @@ fn certify_with(problem: &ProblemFile, bits: u32) -> Result<Certified, NotCertif
 ///
 /// The first value that is not narrow enough.
 fn nearest(problem: &ProblemFile, values: &Table<Vec<Enclosure>>) -> Result<(Trace, u32), String> {
-    let about = about(problem, values);
     let mut trace = Trace::empty(&values.dimensions);
-    let mut widest = 0.0_f64;
+    let widest = nearest_into(&mut trace, problem, values, 0)?;
+    Ok((trace, digits(widest)))
+}
+
+/// Sets the doubles nearest to enclosures in a trace, so many steps later than they stand in their table; the width of the widest
+/// enclosure relative to its scale.
+pub(super) fn nearest_into(
+    trace: &mut Trace,
+    problem: &ProblemFile,
+    values: &Table<Vec<Enclosure>>,
+    later: usize,
+) -> Result<f64, String> {
+    let about = about(problem, values);
+    let (mut widest, mut found) = (0.0_f64, Vec::new());
     for (step, quantity, mode) in values.all_places() {
         let Some(numbers) = values.get(step, quantity, mode) else {
             continue;
         };
-        let mut doubles = Vec::new();
+        let mut doubles = Vec::with_capacity(numbers.len());
         for (index, number) in numbers.iter().enumerate() {
             let scale = about.get(step, quantity, mode).map_or(1.0, |scales| scales[index]);
             widest = widest.max(number.width() / scale);
             doubles.push(nearest_double(number, scale).ok_or_else(|| {
-                let name = quantity.name();
+                let (name, step) = (quantity.name(), step + later);
                 format!("step {step}, mode {mode}: number {index} of {name} is not decided")
             })?);
         }
+        found.push(((step + later, quantity, mode), doubles));
+    }
+    for ((step, quantity, mode), doubles) in found {
         trace.set(step, quantity, mode, doubles);
     }
+    Ok(widest)
+}
+
+/// The digits that are left of a width relative to its scale.
+fn digits(widest: f64) -> u32 {
     #[allow(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         reason = "between 0 and 400 000"
     )]
     let digits = (-libm::log10(widest.max(f64::MIN_POSITIVE))).max(0.0) as u32;
-    Ok((trace, digits))
+    digits
 }
 
 /// The scales of enclosures: their middles serve, since scales need two digits.
@@ -300,35 +367,58 @@ fn rounded(value: f64, digits: usize) -> f64 {
 pub fn certified_decimals(problem: &ProblemFile, digits: u32) -> Result<(Table<Vec<String>>, u32), NotCertified> {
     problem.check()?;
     // 3.33 bits a digit, and some for what is lost on the way.
-    let first_bits = FIRST_BITS.max((digits.saturating_mul(4)).next_power_of_two());
-    with_more_and_more_bits(first_bits, |bits| decimals_with(problem, bits, digits))
+    let bits = digits.saturating_mul(4);
+    let (mut decimals, mut stopped) = (Table::empty(&problem.dimensions()), None);
+    if is_long(problem) && bits <= MOST_BITS_CARRIED {
+        let carried = carry(problem, FIRST_BITS.max(bits), &mut |step, numbers| {
+            decimals_into(&mut decimals, problem, numbers, digits, step - 1)
+        })?;
+        if carried.stopped.is_none() {
+            return Ok((decimals, carried.bits));
+        }
+        stopped = carried.stopped;
+    }
+    let plain = with_more_and_more_bits(FIRST_BITS.max(bits.next_power_of_two()), |bits| {
+        let undecided = |reason: String| NotCertified::Undecided { reason, bits };
+        Enclosure::with_precision(bits, || {
+            let values = enclosed(problem, undecided)?;
+            decimals_into(&mut decimals, problem, &values, digits, 0).map_err(undecided)
+        })
+    });
+    match (plain, stopped) {
+        (Ok(((), bits)), _) => Ok((decimals, bits)),
+        (Err(error), Some(stopped)) => Err(error.after(&stopped)),
+        (Err(error), None) => Err(error),
+    }
 }
 
-/// One attempt at decimals with a number of bits.
-fn decimals_with(problem: &ProblemFile, bits: u32, digits: u32) -> Result<Table<Vec<String>>, NotCertified> {
-    let undecided = |reason: String| NotCertified::Undecided { reason, bits };
-    Enclosure::with_precision(bits, || {
-        let values = enclosed(problem, undecided)?;
-        let about = about(problem, &values);
-        let mut decimals = Table::empty(&values.dimensions);
-        for (step, quantity, mode) in values.all_places() {
-            let Some(numbers) = values.get(step, quantity, mode) else {
-                continue;
-            };
-            let scale = about.get(step, quantity, mode);
-            let texts = numbers.iter().enumerate().map(|(index, number)| {
-                if is_as_good_as_zero(number, scale.map_or(1.0, |scale| scale[index])) {
-                    Some("0".to_owned())
-                } else {
-                    number.to_decimal(digits)
-                }
-            });
-            let texts: Option<Vec<String>> = texts.collect();
-            let place = || undecided_place(step, quantity, mode);
-            decimals.set(step, quantity, mode, texts.ok_or_else(|| undecided(place()))?);
-        }
-        Ok(decimals)
-    })
+/// Sets certified decimals of enclosures in a table, so many steps later than they stand in their own.
+fn decimals_into(
+    decimals: &mut Table<Vec<String>>,
+    problem: &ProblemFile,
+    values: &Numbers,
+    digits: u32,
+    later: usize,
+) -> Result<(), String> {
+    let about = about(problem, values);
+    for (step, quantity, mode) in values.all_places() {
+        let Some(numbers) = values.get(step, quantity, mode) else {
+            continue;
+        };
+        let scale = about.get(step, quantity, mode);
+        let texts = numbers.iter().enumerate().map(|(index, number)| {
+            if is_as_good_as_zero(number, scale.map_or(1.0, |scale| scale[index])) {
+                Some("0".to_owned())
+            } else {
+                number.to_decimal(digits)
+            }
+        });
+        let texts: Option<Vec<String>> = texts.collect();
+        let step = step + later;
+        let place = || undecided_place(step, quantity, mode);
+        decimals.set(step, quantity, mode, texts.ok_or_else(place)?);
+    }
+    Ok(())
 }
 
 fn undecided_place(step: usize, quantity: Quantity, mode: usize) -> String {

@@ -19,6 +19,7 @@
 //! # How it is certified
 //!
 //! [`certify`] runs the problem on enclosures, with more and more bits, until one double is the nearest to all that each enclosure holds.
+//! A run of more than a hundred steps is carried from step to step by an exact midpoint and an [`ellipsoid`] of errors.
 //! Beside each value stand its unit, [`scale`], and how far rounding alone moves it, [`noise`]. [`case`](mod@case) keeps the files and the
 //! lock of their digests: a published case never changes.
 //!
@@ -59,12 +60,14 @@ mod alike;
 pub mod answer;
 pub mod behaviour;
 mod bound;
+mod carried;
 pub mod case;
 pub mod certify;
 pub mod check;
 pub mod csv;
 pub mod diagnose;
 mod digits;
+pub mod ellipsoid;
 mod evidence;
 mod filter_file;
 pub mod flags;
@@ -73,6 +76,7 @@ pub mod formula;
 pub mod invalid;
 mod json;
 pub mod judge;
+mod long_run;
 pub mod models;
 pub mod noise;
 pub mod observation;
