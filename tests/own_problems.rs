@@ -1,7 +1,7 @@
 //! Goal: a filter is judged on the problems of its author: any model, several sensors, steps that differ, any length.
 //!
 //! Method: this crate's own filter answers, right or with a mistake planted in it, and the verdict must name the equation; problems that
-//! cannot be read or run are refused with the place; and a long run is certified as far as it goes and judged to its end.
+//! cannot be read or run are refused with the place; and a long run is certified and judged to its end.
 
 mod common;
 
@@ -144,21 +144,19 @@ fn long(steps: usize) -> Value {
 }
 
 #[test]
-fn a_long_run_is_certified_as_far_as_it_goes_and_judged_to_its_end() {
+fn a_long_run_is_certified_and_judged_to_its_end() {
     let problem = ProblemFile::read(&long(500).to_string()).unwrap();
     let (trace, certified) = certified_as_far_as_it_goes(&problem).unwrap();
-    assert!((8..500).contains(&certified), "{certified}");
-    // The beginning is what certification gives for itself, the rest the run in doubles.
+    assert_eq!(certified, 500);
+    // The beginning is what enclosures alone give.
     let mut beginning = problem.clone();
     beginning.measurements.truncate(8);
     let proven = certify(&beginning).unwrap().trace;
-    let (doubles, _) = run_in_doubles(&problem).unwrap();
     for quantity in Quantity::ALL {
         assert_eq!(trace.get(8, quantity, 0), proven.get(8, quantity, 0));
-        assert_eq!(trace.get(500, quantity, 0), doubles.get(500, quantity, 0));
     }
     let report = verdict(problem.clone(), &[]);
-    assert_eq!((report.is_wrong(), report.cases[0].certified), (false, Some(certified)));
+    assert_eq!((report.is_wrong(), report.cases[0].certified), (false, Some(500)));
     assert_eq!(report.cases[0].judged, report.cases[0].of);
     let report = verdict(problem, &["motion-jacobian-at-the-prediction"]);
     let place = report.faults().map(|(_, judged)| judged.place.1).min();
@@ -166,6 +164,23 @@ fn a_long_run_is_certified_as_far_as_it_goes_and_judged_to_its_end() {
     assert!(
         matches!(&report.diagnosis, Diagnosis::One(variants) if variants[0].id == "motion-jacobian-at-the-prediction")
     );
+}
+
+/// A run by another convention is not carried from step to step: enclosures alone go as far as they go, and doubles to the end.
+#[test]
+fn a_long_run_that_is_not_carried_is_certified_as_far_as_it_goes() {
+    let mut problem = ProblemFile::read(&long(400).to_string()).unwrap();
+    problem.declared = vec!["first-step-unmixed"];
+    let (trace, certified) = certified_as_far_as_it_goes(&problem).unwrap();
+    assert!((8..400).contains(&certified), "{certified}");
+    let mut beginning = problem.clone();
+    beginning.measurements.truncate(8);
+    let proven = certify(&beginning).unwrap().trace;
+    let (doubles, _) = run_in_doubles(&problem).unwrap();
+    for quantity in Quantity::ALL {
+        assert_eq!(trace.get(8, quantity, 0), proven.get(8, quantity, 0));
+        assert_eq!(trace.get(400, quantity, 0), doubles.get(400, quantity, 0));
+    }
 }
 
 /// The short and the long form of a problem are the same problem; a program is sent the long one.
