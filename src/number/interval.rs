@@ -249,7 +249,7 @@ impl One for Interval {
     }
 
     fn is_one(&self) -> bool {
-        self.middle == 1.0 && self.radius == 0.0
+        self.partial_cmp(&Self::exact(1.0)) == Some(Ordering::Equal)
     }
 }
 

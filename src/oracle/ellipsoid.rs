@@ -94,7 +94,7 @@ impl Ellipsoid {
             moved: product(jacobian, &exact(&self.shape)),
             part: self.part_of(bounds, &units)?,
         };
-        self.checked(&self.choice(&step, &units)?, &step, &units)
+        self.checked(&Choice::of(&step, &units)?, &step, &units)
     }
 
     /// As [`Ellipsoid::image`], with a choice that is given. Any choice is sound; a bad one gives a large set.
@@ -118,24 +118,6 @@ impl Ellipsoid {
         let rounded = units.radius_of(bounds)?.max(self.size * LEAST_PART);
         let part = (Interval::exact(rounded) / Interval::exact(self.size)).magnitude();
         part.is_finite().then_some(part)
-    }
-
-    /// The choice that makes the set small, in plain doubles: b for the least trace of the bracket, A′ its Cholesky factor, X the inverse.
-    fn choice(&self, step: &Moved, units: &Units) -> Option<Choice> {
-        let dimension = units.matrix.nrows();
-        let part = step.part;
-        // In units of T.
-        let whitened = product(&units.inverse, &step.moved).map(Interval::middle);
-        let share = (norm(whitened.iter().copied()) / (part * (dimension as f64).sqrt())).max(LEAST_SHARE);
-        let bracket = DMatrix::from_fn(dimension, dimension, |i, j| {
-            let old: f64 = (0..whitened.ncols()).map(|k| whitened[(i, k)] * whitened[(j, k)]).sum();
-            let new = if i == j { (1.0 + share) * part * part } else { 0.0 };
-            old * (1.0 + 1.0 / share) + new
-        });
-        let root = cholesky(&bracket).ok()?;
-        let shape = product(&exact(&units.matrix), &exact(&root)).map(Interval::middle);
-        let inverse = inverse_of_triangle(&shape)?;
-        Some(Choice { shape, inverse, share })
     }
 
     /// The set with the e′ that two residuals prove: E of M and T, and F of the approximate inverse X.
@@ -170,6 +152,26 @@ pub struct Choice {
     pub inverse: DMatrix<f64>,
     /// b.
     pub share: f64,
+}
+
+impl Choice {
+    /// The choice that makes the set small, in plain doubles: b for the least trace of the bracket, A′ its Cholesky factor, X the inverse.
+    fn of(step: &Moved, units: &Units) -> Option<Self> {
+        let dimension = units.matrix.nrows();
+        let part = step.part;
+        // In units of T.
+        let whitened = product(&units.inverse, &step.moved).map(Interval::middle);
+        let share = (norm(whitened.iter().copied()) / (part * (dimension as f64).sqrt())).max(LEAST_SHARE);
+        let bracket = DMatrix::from_fn(dimension, dimension, |i, j| {
+            let old: f64 = (0..whitened.ncols()).map(|k| whitened[(i, k)] * whitened[(j, k)]).sum();
+            let new = if i == j { (1.0 + share) * part * part } else { 0.0 };
+            old * (1.0 + 1.0 / share) + new
+        });
+        let root = cholesky(&bracket).ok()?;
+        let shape = product(&exact(&units.matrix), &exact(&root)).map(Interval::middle);
+        let inverse = inverse_of_triangle(&shape)?;
+        Some(Self { shape, inverse, share })
+    }
 }
 
 /// A step as the inequalities see it.
@@ -235,7 +237,7 @@ fn product(left: &DMatrix<Interval>, right: &DMatrix<Interval>) -> DMatrix<Inter
             }
             for (sum, entry) in sums.iter_mut().zip(entries) {
                 if !entry.is_zero() {
-                    *sum += entry * &factor;
+                    *sum += *entry * factor;
                 }
             }
         }
