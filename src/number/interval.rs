@@ -249,7 +249,7 @@ impl One for Interval {
     }
 
     fn is_one(&self) -> bool {
-        self.partial_cmp(&Self::exact(1.0)) == Some(Ordering::Equal)
+        self.radius == 0.0 && self.middle.to_bits() == 1.0_f64.to_bits()
     }
 }
 

@@ -296,7 +296,7 @@ impl<T: Real> State<T> {
         }
         let reachable: Vec<bool> = step.mode_probabilities.iter().map(|mu| !mu.is_zero()).collect();
         for (probability, &is_reachable) in step.mode_probabilities.iter().zip(&reachable) {
-            entries.push(if is_reachable { probability.ln() } else { T::zero() });
+            entries.push(if is_reachable { Real::ln(probability) } else { T::zero() });
         }
         Self {
             entries,
@@ -320,7 +320,7 @@ impl<T: Real> State<T> {
         }
         for (probability, &is_reachable) in step.mode_probabilities.iter_mut().zip(&self.reachable) {
             let logarithm = next();
-            *probability = if is_reachable { logarithm.exp() } else { T::zero() };
+            *probability = if is_reachable { Real::exp(&logarithm) } else { T::zero() };
         }
     }
 }

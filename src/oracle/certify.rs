@@ -121,9 +121,9 @@ const MOST_STEPS_CARRIED: usize = 10_000;
 
 /// The expected trace of a problem of any length: certified for the steps that are returned, in doubles for those after them.
 ///
-/// A run of more than a hundred steps is carried from step to step, up to 10 000. Where that does not lead to the end, and for shorter runs, twice as many
-/// steps are tried as before, until some do not certify with 2048 bits. No value of the doubles is proven; their rounding noise, by which
-/// they are judged, is measured as that of the others is.
+/// A run of more than a hundred steps is carried from step to step, up to 10 000. Where that does not lead to the end, and for shorter
+/// runs, twice as many steps are tried as before, until some do not certify with 2048 bits. No value of the doubles is proven; their
+/// rounding noise, by which they are judged, is measured as that of the others is.
 ///
 /// # Errors
 ///
