@@ -28,7 +28,7 @@ fn signed(rng: &mut ChaCha8Rng) -> f64 {
 
 /// A double of either sign, from 2^−spread to 2^spread.
 fn of_any_size(rng: &mut ChaCha8Rng, spread: f64) -> f64 {
-    Real::exp(&(signed(rng) * spread * 0.7)) * if rng.next_u64() % 2 == 0 { 1.0 } else { -1.0 }
+    Real::exp(&(signed(rng) * spread * 0.7)) * if rng.next_u64().is_multiple_of(2) { 1.0 } else { -1.0 }
 }
 
 /// The rational that a double is.
@@ -270,7 +270,7 @@ impl Attack {
     /// vector.
     fn error(&self, v: &[Rational], signs: [f64; SIZE], rng: &mut ChaCha8Rng) -> Vec<Rational> {
         let v = on_the_sphere(v, &rational(self.before.size));
-        let mut sign = || rational(if rng.next_u64() % 2 == 0 { 1.0 } else { -1.0 });
+        let mut sign = || rational(if rng.next_u64().is_multiple_of(2) { 1.0 } else { -1.0 });
         let moved = times(&self.before.shape, &v);
         (0..SIZE)
             .map(|i| {
