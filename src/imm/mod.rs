@@ -15,6 +15,7 @@
 //! Reading order:
 //!
 //! - [`probability`]: the equations of the mode probabilities;
+//! - [`continuous`]: the chain of a step of any length;
 //! - [`problem`]: what a run is given, checked;
 //! - [`record`]: every value of one step, and the table of those that are traced;
 //! - [`row`]: what is known of each of these;
@@ -35,6 +36,7 @@ pub mod angles;
 pub(crate) mod by_kind;
 mod check;
 mod check_states;
+pub mod continuous;
 pub mod cycle;
 mod entries;
 pub mod equations;

@@ -209,6 +209,15 @@ impl<T: Real> Real for Dual<T> {
         let factor = T::integer(i64::try_from(k).unwrap_or(i64::MAX));
         self.chain(self.value.stumpff(k), (factor * second - next) / T::integer(2))
     }
+
+    fn bits() -> u32 {
+        T::bits()
+    }
+
+    /// The size of a rest says nothing of its slope, which is undecided where it is not zero.
+    fn up_to(size: &Self) -> Self {
+        Self::new(T::up_to(&size.value), T::up_to(&T::undecided()))
+    }
 }
 
 impl<T: PartialOrd> PartialOrd for Dual<T> {

@@ -94,6 +94,14 @@ impl Real for f64 {
         libm::atan2(self + 0.0, x + 0.0)
     }
 
+    fn bits() -> u32 {
+        f64::MANTISSA_DIGITS
+    }
+
+    fn up_to(_: &Self) -> Self {
+        0.0
+    }
+
     /// From c₁ or c₂ upwards by c_k = (1/(k−2)! − c₍k−2₎)/t where |t| > k², and by the series else, so that neither cancels.
     ///
     /// The error, with u = 2⁻⁵³: for t > 0 at most 6u of the result and what 2u of t move it by; for t < 0 at most (6 + √−t) u of the

@@ -273,6 +273,18 @@ impl<T: Real> Real for Gradient<T> {
             (factor * self.value.stumpff(k + 2) - self.value.stumpff(k + 1)) / T::integer(2)
         })
     }
+
+    fn bits() -> u32 {
+        T::bits()
+    }
+
+    /// The size of a rest says nothing of its slopes: those that it has are undecided.
+    fn up_to(size: &Self) -> Self {
+        Self {
+            value: T::up_to(&size.value),
+            slopes: size.slopes.iter().map(|_| T::undecided()).collect(),
+        }
+    }
 }
 
 impl<T: PartialEq> PartialEq for Gradient<T> {

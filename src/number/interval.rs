@@ -330,6 +330,14 @@ impl Real for Interval {
     fn stumpff(&self, k: usize) -> Self {
         self.by_enclosure(|t| t.stumpff(k))
     }
+
+    fn bits() -> u32 {
+        f64::bits()
+    }
+
+    fn up_to(size: &Self) -> Self {
+        Self::around(0.0, size.magnitude())
+    }
 }
 
 impl PartialEq for Interval {

@@ -192,4 +192,28 @@ pub trait Real: Roots + PartialOrd {
     /// `each_stumpff_function_is_tied_to_the_one_two_above`, `the_slope_of_a_stumpff_function_is_made_of_the_next_two` (property).
     #[must_use]
     fn stumpff(&self, k: usize) -> Self;
+    /// The bits to which numbers are computed here: how far a series is to be summed.
+    ///
+    /// Example: doubles, and enclosures of 200 bits.
+    ///
+    /// ```
+    /// use immaculate::number::{Enclosure, Real};
+    ///
+    /// assert_eq!((f64::bits(), Enclosure::with_precision(200, Enclosure::bits)), (53, 200));
+    /// ```
+    fn bits() -> u32;
+    /// What is left of a series that is summed no further, of which nothing is known but that its magnitude is at most `size`: all numbers
+    /// from −`size` to `size`. Zero in number systems that do not know how far they are off.
+    ///
+    /// Example: an enclosure contains both ends, and a double is the middle.
+    ///
+    /// ```
+    /// use immaculate::number::{Enclosure, Rational, Real};
+    ///
+    /// let rest = Enclosure::with_precision(64, || Enclosure::up_to(&Enclosure::exact(0.25)));
+    /// assert!([-1, 0, 1].iter().all(|sign| rest.contains(&Rational::new(*sign, 4))));
+    /// assert_eq!(f64::up_to(&0.25), 0.0);
+    /// ```
+    #[must_use]
+    fn up_to(size: &Self) -> Self;
 }

@@ -254,6 +254,14 @@ impl Real for RandomRounding {
     fn stumpff(&self, k: usize) -> Self {
         perturbed(self.0.stumpff(k))
     }
+
+    fn bits() -> u32 {
+        f64::bits()
+    }
+
+    fn up_to(_: &Self) -> Self {
+        Self(0.0)
+    }
 }
 
 impl PartialOrd for RandomRounding {

@@ -265,6 +265,15 @@ impl Real for Enclosure {
     fn stumpff(&self, k: usize) -> Self {
         self.map(|t, precision| stumpff::stumpff(k, t, precision))
     }
+
+    /// Those of the scope; none outside of all.
+    fn bits() -> u32 {
+        Self::precision().unwrap_or(0)
+    }
+
+    fn up_to(size: &Self) -> Self {
+        size.map(|size, _| Some(Ball::zero().widened(size.middle.bound_above().plus(size.radius))))
+    }
 }
 
 impl PartialEq for Enclosure {
