@@ -1407,6 +1407,7 @@ impl<T: number::Real> AtRunTime<T> {
             filters: problem.filters.iter().map(|filter| self.filter(filter)).collect(),
             interaction: match &problem.interaction {
                 Interaction::Imm => Interaction::Imm,
+                Interaction::Gpb1 => Interaction::Gpb1,
                 Interaction::Unmixed => Interaction::Unmixed,
                 Interaction::Converted(_) => unreachable!("no scene of this file has one"),
             },

@@ -42,6 +42,13 @@ fn the_chain_and_the_mixing_are_their_formulas() {
 }
 
 #[test]
+fn a_common_start_that_is_mixed_by_the_chain_is_its_formula() {
+    let mut scene = kalman();
+    scene.problem.interaction = Interaction::Gpb1;
+    holds(&scene, 2, COMMON_START);
+}
+
+#[test]
 fn the_prediction_is_its_formula() {
     holds(&kalman(), 2, PREDICTION);
     holds(&points("cubature-3"), 2, PREDICTION_BY_POINTS);
@@ -562,6 +569,13 @@ const CORRELATED: &[Row] = &[
     ("noise-correlation-omitted", Q::CrossCovariance, |at, j| rows(at.pp(j) * at.h().transpose())),
 ];
 
+/// Where every mode is to start from the combined estimate.
+#[rustfmt::skip]
+const COMMON_START: &[Row] = &[
+    ("common-start-mixed-by-the-chain", Q::MixingProbabilities, |a, j| each(|i| a.mixing(i, j))),
+    ("chain-skipped", Q::PredictedModeProbabilities, |a, _| each(|j| a.mu(j))),
+];
+
 /// In step 2 of [`changing`] F is 1.1 times, Q 1.5 times and R 1.3 times that of step 1.
 #[rustfmt::skip]
 const STEPS: &[Row] = &[
@@ -735,6 +749,7 @@ const MIXING: &[Row] = &[
     ("mixing-with-predicted-probabilities", Q::MixingProbabilities, |a, j| each(|i| a.p(i, j) * a.c(i) / a.c(j))),
     ("mixing-normalised-by-rows", Q::MixingProbabilities, |a, j| each(|i| a.p(i, j))),
     ("mixing-without-mode-probabilities", Q::MixingProbabilities, |a, j| normalised(&each(|i| a.p(i, j)))),
+    ("mixing-with-mode-probabilities-alone", Q::MixingProbabilities, |a, _| each(|i| a.mu(i))),
     ("mixing-skipped", Q::MixedMean, |a, j| rows(a.xb(j))),
     ("mixing-skipped", Q::MixedCovariance, |a, j| rows(a.pb(j))),
     ("common-mixing", Q::MixedMean, |a, _| rows(a.before().v(Q::CombinedMean, 0))),

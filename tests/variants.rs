@@ -189,7 +189,7 @@ fn a_variant_changes_nothing_where_it_does_not_apply() {
             left_alone.insert(format!("{:?}", variant.applies));
         }
     }
-    assert_eq!(left_alone.len(), 17, "each limit was met: {left_alone:?}");
+    assert_eq!(left_alone.len(), 18, "each limit was met: {left_alone:?}");
 }
 
 /// Exact, by hand: the words for where a variant can make a difference, in filters of each kind.
@@ -230,6 +230,7 @@ fn where_a_variant_applies_is_what_its_word_says() {
         expected(&[&["points", "covariances", "angles", "bearings"]])
     );
     assert_eq!(of(&fixed(Interaction::Imm)), expected(&[&["fixed gains"]]));
+    assert_eq!(of(&common_start()), expected(&[&kalman, &["common start"]]));
     let separate = separate_states(Filter::kalman());
     assert_eq!(of(&separate), expected(&[&kalman, &["state conversions"]]));
     let of_converted = expected(&[&kalman, &dimensions, &["conversions", "bearings"]]);
@@ -597,6 +598,7 @@ fn scenes() -> Vec<Scene> {
         ("linear with points", drawing),
         ("fixed gains", fixed(Interaction::Imm)),
         ("fixed gains, unmixed", fixed(Interaction::Unmixed)),
+        ("common start", common_start()),
         ("embedded", embedded()),
         ("unequal dimensions", unequal(embedded())),
         ("converted", converted(Conversion::Standard)),
@@ -630,6 +632,13 @@ fn linear(modes: usize) -> Setup<f64> {
     h[(1, 2)] += 1.0;
     let mut setup = generic(4, modes, Sensor::Linear(h), Filter::kalman());
     setup.measurements[2] = None;
+    setup
+}
+
+/// All modes start from the combined estimate.
+fn common_start() -> Setup<f64> {
+    let mut setup = linear(3);
+    setup.problem.interaction = Interaction::Gpb1;
     setup
 }
 
@@ -956,6 +965,7 @@ fn on_enclosures(setup: &Setup<f64>) -> Setup<Enclosure> {
 fn without_conversions(interaction: &Interaction<f64, Dyn>) -> Interaction<Enclosure, Dyn> {
     match interaction {
         Interaction::Imm => Interaction::Imm,
+        Interaction::Gpb1 => Interaction::Gpb1,
         Interaction::Unmixed => Interaction::Unmixed,
         Interaction::Converted(_) => unreachable!("no problem that is put on enclosures has one"),
     }

@@ -17,7 +17,7 @@ use immaculate::oracle::formula::{ComputedFormula, ComputedFormulas};
 use immaculate::oracle::invalid::{Class, Invalid};
 use immaculate::oracle::judge::{Finding, Judged, Judgement, OwnError};
 use immaculate::oracle::observation::{Discrepancy, Observation, SingleInput};
-use immaculate::oracle::problem::FilterFile;
+use immaculate::oracle::problem::{FilterFile, InteractionFile};
 use immaculate::oracle::run::Triangle;
 use immaculate::oracle::subject::{Broken, Precision, Ready};
 use immaculate::oracle::trace::{Dimensions, Trace};
@@ -346,6 +346,7 @@ fn case(id: &str, outcome: Outcome) -> CaseReport {
     CaseReport {
         id: id.into(),
         filters: vec![FilterFile::Kalman {}; 2],
+        interaction: InteractionFile::Imm,
         behaviours: match outcome {
             Outcome::Rejected { .. } | Outcome::NotRejected => Vec::new(),
             _ => vec![Behaviour::OrdinaryData],

@@ -37,6 +37,7 @@ where
         Interaction::Imm | Interaction::Converted(_) => {
             probability::mixing_probability(&problem.chain, mode_probabilities, predicted_mode_probability, i, j)
         }
+        Interaction::Gpb1 => mode_probabilities[i].clone(),
         Interaction::Unmixed if i == j => T::one(),
         Interaction::Unmixed => T::zero(),
     }

@@ -63,6 +63,50 @@ where
 {
     /// Each from the estimates of all modes, mixed: the interacting multiple model filter.
     Imm,
+    /// Each from the combined estimate of the step before: the generalised pseudo-Bayesian filter of first order.
+    ///
+    /// Source: G. A. Ackerson and K. S. Fu, On State Estimation in Switching Environments, 1970; Y. Bar-Shalom, X. R. Li and
+    /// T. Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001, section 11.6.4 (GPB1).
+    ///
+    /// ```text
+    /// μᵢ∣ⱼ = μᵢ for all j, so that x̂⁰ʲ = x̂ and P⁰ʲ = P
+    /// ```
+    ///
+    /// Why: after each step the history of the modes is forgotten, and one Gaussian stands for all of it. The chain moves the
+    /// probabilities, cⱼ = Σᵢ pᵢⱼ μᵢ, and has no say in where a mode starts. The interacting multiple model filter asks where mode j *came
+    /// from*; both agree where that makes no difference, as pᵢⱼ = qⱼ for all i gives μᵢ∣ⱼ = qⱼ μᵢ / (qⱼ Σᵢ μᵢ) = μᵢ.
+    ///
+    /// Example: two modes that never change into each other. Both start from 2, with the spread of 0 and 4 about it.
+    ///
+    /// ```
+    /// use immaculate::filter::Filter;
+    /// use immaculate::{gaussian::Gaussian, imm::{Imm, Initial, Interaction, Problem}};
+    /// use immaculate::model::{Sensor, motion::{Mode, Motion}};
+    /// use nalgebra::{matrix, vector};
+    ///
+    /// let mode = |q| Mode { name: "walk".into(), motion: Motion::Linear(matrix![1.0]), noise: matrix![q] };
+    /// let problem = Problem {
+    ///     modes: vec![mode(1.0), mode(3.0)],
+    ///     filters: vec![Filter::kalman()],
+    ///     interaction: Interaction::Gpb1,
+    ///     angles: vec![],
+    ///     chain: vec![vec![1.0, 0.0], vec![0.0, 1.0]],
+    ///     sensor: Sensor::Linear(matrix![1.0]),
+    ///     measurement_noise: matrix![2.0],
+    /// };
+    /// let at = |x| Gaussian { mean: vector![x], covariance: matrix![1.0] };
+    /// let initial = Initial { modes: vec![at(0.0), at(4.0)], mode_probabilities: vec![0.5, 0.5] };
+    /// let mut filter = Imm::new(problem, &initial)?;
+    /// let step = filter.step(None)?;
+    /// let start = Gaussian { mean: vector![2.0], covariance: matrix![5.0] }; // ½ · 0 + ½ · 4, 1 + ½ · (0 − 2)² + ½ · (4 − 2)²
+    /// assert_eq!(step.mixed, [start.clone(), start]);
+    /// assert_eq!([&step.predicted[0].covariance, &step.predicted[1].covariance], [&matrix![6.0], &matrix![8.0]]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// Evidence: `first_order_filters_start_every_mode_from_the_combined_estimate`,
+    /// `where_the_chain_forgets_the_first_order_filter_is_the_interacting_one` (exact).
+    Gpb1,
     /// Each from its own: the update of fixed gains read as it is printed, without mixed states — derbez2000 (fixed-gain-update).
     ///
     /// Source: derbez2000, section 3, not numbered.
@@ -71,7 +115,10 @@ where
     /// μᵢ∣ⱼ = 1 for i = j and 0 else, so that x̂⁰ʲ = x̂ʲ
     /// ```
     ///
-    /// Only the probabilities, which follow the chain, and the combined mean know of the other modes.
+    /// Only the probabilities, which follow the chain, and the combined mean know of the other modes. Under a chain that is the unit matrix
+    /// this is the static bank of filters (D. T. Magill, Optimal Adaptive Estimation of Sampled Stochastic Processes, 1965): each filter
+    /// runs by itself, and μⱼ is proportional to μⱼ(0) times the product of its likelihoods. So is then [`Interaction::Imm`], as μᵢ∣ⱼ is
+    /// one for i = j there.
     ///
     /// Example: the two filters of [`Filter::given`](crate::filter::Filter::given), each by itself.
     ///
@@ -100,7 +147,7 @@ where
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
-    /// Evidence: `unmixed_modes_with_fixed_gains_stand_alone` (exact).
+    /// Evidence: `unmixed_modes_with_fixed_gains_stand_alone`, `a_static_bank_is_the_rule_of_bayes_on_products_of_likelihoods` (exact).
     Unmixed,
     /// As [`Interaction::Imm`], where modes have states of their own: [`state_conversion`](super::state_conversion).
     ///

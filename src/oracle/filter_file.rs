@@ -24,7 +24,7 @@ pub const MIXINGS: [&str; 2] = ["mixed", UNMIXED];
 pub const UNMIXED: &str = "unmixed";
 
 /// The kinds of filter whose name is not that of a rule.
-const OTHER_KINDS: [&str; 9] = [
+const OTHER_KINDS: [&str; 11] = [
     "kalman",
     "extended",
     "extended-iterated",
@@ -34,6 +34,8 @@ const OTHER_KINDS: [&str; 9] = [
     "fixed-gain-unmixed",
     CORRELATED_NOISE,
     STATE_CONVERSION,
+    GPB1,
+    UNMIXED,
 ];
 
 /// What a filter must take, beside its own kind, where the noises of motion and measurement are correlated.
@@ -41,6 +43,9 @@ pub(super) const CORRELATED_NOISE: &str = "correlated-noise";
 
 /// What a filter must take, beside its own kind, where modes have states of their own.
 pub(super) const STATE_CONVERSION: &str = "state-conversion";
+
+/// What a filter must take, beside its own kind, where all modes start from the combined estimate.
+pub(super) const GPB1: &str = "gpb1";
 
 /// The families of filters, which differ in their equations and not only in a rule: [`FilterFile::family`].
 pub const FAMILIES: [&str; 6] = ["kalman", "extended", "cubature", "unscented", "converted", "fixed-gain"];
@@ -93,6 +98,38 @@ pub enum FilterFile {
         /// One a mode.
         modes: Vec<FixedGainFile>,
     },
+}
+
+/// Which estimates the filters of the modes start from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum InteractionFile {
+    /// Those of all modes, mixed.
+    Imm,
+    /// The combined one.
+    Gpb1,
+    /// Their own.
+    Unmixed,
+}
+
+impl InteractionFile {
+    /// The word for it in files.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Imm => "imm",
+            Self::Gpb1 => GPB1,
+            Self::Unmixed => UNMIXED,
+        }
+    }
+
+    /// The printed equations that give a quantity in a filter.
+    pub fn equation(self, filter: &FilterFile, quantity: Quantity) -> &'static str {
+        match (self, quantity) {
+            (Self::Gpb1, Quantity::MixingProbabilities) => "Bar-Shalom, Li and Kirubarajan 2001, section 11.6.4",
+            (Self::Unmixed, Quantity::MixingProbabilities) => "Bar-Shalom, Li and Kirubarajan 2001, section 11.6.2",
+            _ => filter.equation(quantity),
+        }
+    }
 }
 
 /// What a mode has in place of covariances.

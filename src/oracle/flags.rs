@@ -3,7 +3,7 @@
 //! After this file the reader knows every word by which cases are marked and chosen, and what a problem with it is like.
 
 /// Every flag, and what a problem with it is like.
-pub const FLAGS: [(&str, &str); 56] = [
+pub const FLAGS: [(&str, &str); 57] = [
     (
         "single-equation",
         "All is trivial but one equation, or one group of them.",
@@ -146,5 +146,9 @@ pub const FLAGS: [(&str, &str); 56] = [
     (
         "correlated-noise",
         "The noises of motion and measurement have something in common.",
+    ),
+    (
+        "interaction",
+        "Modes start from the combined estimate, or each from its own, and not from mixed ones.",
     ),
 ];

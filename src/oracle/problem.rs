@@ -4,7 +4,7 @@
 //! description). Format 1 is format 2 without what [`super::models`] adds. What must be true of a file is in `well_formed`.
 
 use super::filter_file::{CORRELATED_NOISE, STATE_CONVERSION};
-pub use super::filter_file::{FAMILIES, FilterFile, FixedGainFile, MIXINGS, RULES, UNMIXED, kinds};
+pub use super::filter_file::{FAMILIES, FilterFile, FixedGainFile, InteractionFile, MIXINGS, RULES, UNMIXED, kinds};
 use super::invalid::{Class, Invalid};
 use super::models::{ComponentFile, ModeKeys, ModeModels, ModelParameters};
 use super::single;
@@ -12,7 +12,7 @@ use super::state_conversions::StateConversionFile;
 pub use super::steps::MeasurementAt;
 use super::trace::Dimensions;
 use super::unreadable;
-use crate::imm::Needs;
+use crate::imm::{Needs, Quantity};
 use crate::model::space::ComponentKind;
 use schemars::JsonSchema;
 use serde::de::IgnoredAny;
@@ -68,6 +68,14 @@ pub struct ProblemFile {
     pub sensors: Vec<SensorFile>,
     /// The filter of every mode that has none of its own.
     pub filter: FilterFile,
+    /// Which estimates the filters start from: `imm`, `gpb1` or `unmixed`; absent, `imm`. Format 2.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "if_there_at_all"
+    )]
+    #[schemars(with = "InteractionFile")]
+    pub interaction: Option<InteractionFile>,
     /// `transition[i][j]` = P(mode j at k ∣ mode i at k−1).
     pub transition: Rows,
     /// The estimate at step 0, a posterior.
@@ -328,7 +336,20 @@ impl ProblemFile {
         if !self.conversions.is_empty() {
             kinds.push(STATE_CONVERSION);
         }
+        if self.interaction() != InteractionFile::Imm {
+            kinds.push(self.interaction().name());
+        }
         kinds
+    }
+
+    /// Which estimates the filters start from. Of fixed gains their own key says it.
+    pub fn interaction(&self) -> InteractionFile {
+        self.interaction.unwrap_or(InteractionFile::Imm)
+    }
+
+    /// The printed equations that give a quantity in a mode.
+    pub fn equation(&self, quantity: Quantity, mode: usize) -> &'static str {
+        self.interaction().equation(self.filter_of(mode), quantity)
     }
 
     /// Whether the noises of a mode and of the sensor have something in common.

@@ -90,7 +90,7 @@ fn of_format_1() -> Value {
         "measurements": { "items": step },
     } });
     // No value is of no type.
-    for key in ["parameters", "let", "conversions", "sensors"] {
+    for key in ["parameters", "let", "conversions", "interaction", "sensors"] {
         schema["properties"][key] = json!({ "enum": [] });
     }
     schema

@@ -4,7 +4,9 @@
 
 use super::bound::{Bound, Functions};
 use super::invalid::{Class, Invalid};
-use super::problem::{FilterFile, MeasurementAt, MeasurementFile, ModeFile, ProblemFile, Rows, UNMIXED};
+use super::problem::{
+    FilterFile, InteractionFile, MeasurementAt, MeasurementFile, ModeFile, ProblemFile, Rows, UNMIXED,
+};
 use super::variant;
 use crate::filter::Filter;
 use crate::filter::fixed_gain::FixedGain;
@@ -156,7 +158,11 @@ impl ProblemFile {
             filters: self.filters(number, rule_of)?,
             interaction: match &self.filter {
                 FilterFile::FixedGain { mixing, .. } if mixing == UNMIXED => Interaction::Unmixed,
-                _ => self.converted(&functions, number, interval)?,
+                _ => match self.interaction() {
+                    InteractionFile::Imm => self.converted(&functions, number, interval)?,
+                    InteractionFile::Gpb1 => Interaction::Gpb1,
+                    InteractionFile::Unmixed => Interaction::Unmixed,
+                },
             },
             angles: self.angles_of_state(Reader::Common),
             chain: self.transition.iter().map(|row| list(row)).collect(),

@@ -156,6 +156,7 @@ impl ProblemFile {
             ("parameters", !self.parameters.is_empty()),
             ("let", !self.definitions.is_empty()),
             ("conversions", !self.conversions.is_empty()),
+            ("interaction", self.interaction.is_some()),
         ];
         if let Some((key, _)) = of_problem.into_iter().find(|(_, is_there)| *is_there) {
             return Some(format!("problem.{key}"));

@@ -6,7 +6,7 @@ use super::behaviour::{Behaviour, NotAsked};
 use super::diagnose::Diagnosis;
 use super::judge::{Finding, Judged, Judgement};
 use super::observation::Observation;
-use super::problem::{FilterFile, ProblemFile};
+use super::problem::{FilterFile, InteractionFile, ProblemFile};
 use super::subject::{Broken, Ready};
 use super::trace::Dimensions;
 use super::variant::{Kind, Variant};
@@ -71,6 +71,8 @@ pub struct CaseReport {
     pub id: String,
     /// The filter of each mode.
     pub filters: Vec<FilterFile>,
+    /// Which estimates they start from.
+    pub interaction: InteractionFile,
     /// What its filters meet in it, [`Behaviour::of`].
     pub behaviours: Vec<Behaviour>,
     /// Its dimensions.
@@ -99,6 +101,7 @@ impl CaseReport {
             filters: (0..problem.modes.len())
                 .map(|mode| problem.filter_of(mode).clone())
                 .collect(),
+            interaction: problem.interaction(),
             behaviours: Behaviour::of(problem),
             dimensions: problem.dimensions(),
             outcome: Outcome::NothingShown,
@@ -148,6 +151,11 @@ impl CaseReport {
     /// The families of its filters.
     pub fn families(&self) -> Vec<&'static str> {
         families(self.filters.iter())
+    }
+
+    /// The printed equations that give a quantity in a mode.
+    pub fn equation(&self, quantity: Quantity, mode: usize) -> &'static str {
+        self.interaction.equation(&self.filters[mode], quantity)
     }
 
     /// The columns of a quantity in a step of the case.

@@ -5,8 +5,8 @@
 
 use super::invalid::{Class, Invalid};
 use super::problem::{
-    Conventions, FORMAT, FORMAT_2, FilterFile, FixedGainFile, MIXINGS, MeasurementAt, MeasurementFile, ProblemFile,
-    RULES, Rows, SensorFile,
+    Conventions, FORMAT, FORMAT_2, FilterFile, FixedGainFile, InteractionFile, MIXINGS, MeasurementAt, MeasurementFile,
+    ProblemFile, RULES, Rows, SensorFile,
 };
 use super::trace::Dimensions;
 use super::unreadable::value_at;
@@ -37,6 +37,7 @@ impl ProblemFile {
         check_size(&self.dimensions())?;
         self.check_functions()?;
         self.check_filters()?;
+        self.check_interaction()?;
         self.check_noise_cross_covariances()?;
         self.check_measurements()?;
         self.check_values()
@@ -178,6 +179,22 @@ impl ProblemFile {
             }
         }
         Ok(())
+    }
+
+    /// Which estimates the filters start from is said once, and modes with states of their own are mixed.
+    fn check_interaction(&self) -> Result<(), Invalid> {
+        let Some(interaction) = self.interaction else {
+            return Ok(());
+        };
+        let name = interaction.name();
+        let reason = if let FilterFile::FixedGain { .. } = self.filter {
+            format!("is {name:?}, and `filter.mixing` says it of fixed gains; leave `interaction` out")
+        } else if interaction != InteractionFile::Imm && !self.conversions.is_empty() {
+            format!("is {name:?}, and `conversions` give modes states of their own, which \"imm\" alone mixes")
+        } else {
+            return Ok(());
+        };
+        Err(Invalid::new(Class::Unknown, "problem.interaction", reason))
     }
 
     /// What is said of correlated noises belongs to a sensor, and to a filter that takes it.

@@ -25,7 +25,7 @@ pub fn json(report: &Report) -> Value {
             let unusual: Vec<Value> = values
                 .filter(|value| value.finding != Finding::Right)
                 .map(|value| {
-                    let equation = case.filters[value.place.2].equation(value.place.1);
+                    let equation = case.equation(value.place.1, value.place.2);
                     let mut json = value_json(value, equation, &names);
                     json["excused"] = json!(value.finding.is_fault() && report.is_otherwise(value.place.1));
                     json

@@ -57,7 +57,7 @@ impl FaultyEquation<'_> {
 
     /// The printed equations.
     pub fn equation(&self) -> &'static str {
-        self.case.filters[self.first.place.2].equation(self.quantity)
+        self.case.equation(self.quantity, self.first.place.2)
     }
 
     /// The first fault: where, what is shown, what it should be, and how far it is off.

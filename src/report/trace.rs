@@ -32,7 +32,7 @@ pub fn text(problem: &ProblemFile, values: &Table<Vec<String>>) -> String {
             let Some(first) = (0..modes).find(|&mode| values.get(step, quantity, mode).is_some()) else {
                 continue;
             };
-            let equation = problem.filter_of(first).equation(quantity);
+            let equation = problem.equation(quantity, first);
             let _ = writeln!(text, "  {}  —  {equation}", quantity.name());
             for mode in 0..modes {
                 let Some(numbers) = values.get(step, quantity, mode) else {

@@ -56,7 +56,10 @@ def ready(message, options):
         "precision": "single" if options.single else "double",
         "conventions": options.conventions,
         "formats": ["immaculate-problem/1", "immaculate-problem/2"],
-        "kinds": ["kalman", "extended", "unscented", "converted", "state-conversion", *RULES],
+        "kinds": [
+            *["kalman", "extended", "unscented", "converted", *RULES],
+            *["state-conversion", "gpb1", "unmixed"],
+        ],
         "echo": (np.array(echo["matrix"]) @ np.array(echo["vector"])).tolist(),
     }
 
@@ -126,6 +129,7 @@ def arguments_of(problem, options):
         ],
         "rule": points and tuple(part.astype(number) for part in points),
         "square_root": SQUARE_ROOTS[options.conventions.get("square_root", "cholesky-lower")],
+        "interaction": problem.get("interaction", "imm"),
         "first_step": options.conventions.get("first_step", "mixed"),
         "has_two_pi": options.conventions.get("log_likelihood", "full") == "full",
         "linearises": problem["filter"]["kind"] == "extended",
@@ -764,6 +768,7 @@ class Imm:
         covariances,
         rule=None,
         square_root=np.linalg.cholesky,
+        interaction="imm",
         first_step="mixed",
         has_two_pi=True,
         linearises=False,
@@ -773,6 +778,7 @@ class Imm:
         self.estimates = list(zip(means, covariances))
         self.rule = rule  # points, weights, covariance weights; None for filters without points
         self.square_root = square_root
+        self.interaction = interaction  # imm, gpb1 or unmixed
         self.mixes = first_step == "mixed"
         self.predicts = first_step != "predicted"
         self.has_two_pi = has_two_pi
@@ -843,8 +849,13 @@ class Imm:
         return self.mode_probabilities @ self.chain
 
     def mixing_probabilities(self, mode, predicted):
-        """mu_i|j = p_ij mu_i / c_j; a mode that cannot be reached keeps its own estimate."""
-        if not self.mixes or predicted[mode.index] == 0:
+        """mu_i|j = p_ij mu_i / c_j; a mode that cannot be reached keeps its own estimate.
+
+        In GPB1 every mode starts from the combined estimate: mu_i|j = mu_i.
+        """
+        if self.mixes and self.interaction == "gpb1":
+            return self.mode_probabilities
+        if not self.mixes or self.interaction == "unmixed" or predicted[mode.index] == 0:
             return np.eye(len(predicted), dtype=self.number)[mode.index]
         return self.chain[:, mode.index] * self.mode_probabilities / predicted[mode.index]
 

@@ -27,6 +27,21 @@ class TransitionTransposedInMixing:
         return self.chain[mode.index, :] * self.mode_probabilities / predicted[mode.index]
 
 
+class MixingWithModeProbabilitiesAlone:
+    """GPB1 under the name of IMM: the chain has no say in where a mode starts."""
+
+    def mixing_probabilities(self, mode, predicted):
+        return self.mode_probabilities
+
+
+class CommonStartMixedByTheChain:
+    """IMM under the name of GPB1."""
+
+    def mixing_probabilities(self, mode, predicted):
+        joint = self.chain[:, mode.index] * self.mode_probabilities
+        return joint / predicted[mode.index]
+
+
 class MixingSkipped:
     """Every mode goes on from its own estimate."""
 
@@ -304,6 +319,8 @@ MISTAKES = {
     "state-conversion-covariance-not-added": StateConversionCovarianceNotAdded,
     "transition-transposed": TransitionTransposed,
     "transition-transposed-in-mixing": TransitionTransposedInMixing,
+    "mixing-with-mode-probabilities-alone": MixingWithModeProbabilitiesAlone,
+    "common-start-mixed-by-the-chain": CommonStartMixedByTheChain,
     "mixing-skipped": MixingSkipped,
     "mixed-spread-omitted": MixedSpreadOmitted,
     "covariances-not-mixed": CovariancesNotMixed,

@@ -147,6 +147,7 @@ END
     done <<'END'
 transition-transposed predicted_mode_probabilities
 transition-transposed-in-mixing mixing_probabilities
+mixing-with-mode-probabilities-alone mixing_probabilities
 mixing-skipped mixed.mean
 mixed-spread-omitted mixed.covariance
 covariances-not-mixed mixed.covariance
@@ -182,6 +183,10 @@ states-mixed-unconverted mixed.mean
 state-conversion-jacobian-omitted mixed.covariance
 state-conversion-covariance-not-added mixed.covariance
 END
+    # Modes that start from the combined estimate, or each from its own.
+    expect 0 "4 right of 4 cases" -- --case gpb1 --case unmixed -- "${numpy[@]}"
+    expect 1 "FAULT mixing_probabilities" "MOST LIKELY" "(common-start-mixed-by-the-chain; mistake)" -- --case gpb1 \
+        -- "${numpy[@]}" --mistake common-start-mixed-by-the-chain
     expect 1 "MOST LIKELY, TWO AT ONCE" "(mixed-spread-omitted; mistake)" "(determinant-omitted; mistake)" \
         -- "${short[@]}" -- "${numpy[@]}" --mistake mixed-spread-omitted --mistake determinant-omitted
 

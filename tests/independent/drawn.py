@@ -147,6 +147,8 @@ def problem(draw, id):
         raw["measurements"].append(step(draw, scene, raw, k))
     if filter["kind"] != "fixed-gain" and count > 1 and draw.random() < 0.4:
         with_own_state(draw, raw, scene)
+    elif filter["kind"] != "fixed-gain" and draw.random() < 0.4:
+        raw["interaction"] = draw.choice(["imm", "gpb1", "unmixed"])
     return raw
 
 

@@ -23,8 +23,7 @@ def step(problem, at, probabilities, estimates):
     """One step, from the estimates and probabilities at k−1 to those at k."""
     seen, converted = problem.seen(at)
     predicted_probabilities, mixing = mix_probabilities(problem.chain(at), probabilities)
-    if problem.raw["filter"].get("mixing") == "unmixed":
-        mixing = [unit(j, len(mixing)) for j in range(len(mixing))]
+    mixing = weights_of_the_start(problem, mixing, probabilities)
     modes, predictions, updates = [], [], []
     for j, weights in enumerate(mixing):
         angles = problem.angles_of[j]
@@ -64,6 +63,15 @@ def mix_probabilities(chain, probabilities):
         else:
             mixing.append([chain[i][j] * probabilities[i] / predicted[j] for i in modes])
     return predicted, mixing
+
+
+def weights_of_the_start(problem, mixing, probabilities):
+    """Of which estimates each mode starts: mixed ones, its own, or (GPB1, Bar-Shalom et al. 2001, 11.6.4) the combined one, μ^(i∣j) = μⁱ."""
+    modes = len(mixing)
+    kind = problem.raw.get("interaction", problem.raw["filter"].get("mixing"))
+    if kind == "gpb1":
+        return [probabilities] * modes
+    return [unit(j, modes) for j in range(modes)] if kind == "unmixed" else mixing
 
 
 def unit(j, size):

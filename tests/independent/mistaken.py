@@ -184,6 +184,10 @@ def not_turned(images, centre, angles):
     return images
 
 
+def by_the_chain(problem, mixing, probabilities):
+    return mixing
+
+
 def always_mixed(j, size):
     return [arb(1) / size for _ in range(size)]
 
@@ -239,6 +243,7 @@ EQUATIONS = [
     ("the covariance not updated", "updated.covariance", "imm.update", covariance_kept, "update.cubature-3"),
     ("the gain not used", "updated.mean", "imm.update_with_given_gain", gain_of_nothing, "step.fixed-gain"),
     ("unmixed estimates mixed", "mixing_probabilities", "imm.unit", always_mixed, "step.fixed-gain-unmixed"),
+    ("the common start mixed by the chain", "mixing_probabilities", "imm.weights_of_the_start", by_the_chain, "gpb1.kalman"),
     ("an unreachable mode mixed", "mixing_probabilities", "imm.unit", always_mixed, "chain.unreachable"),
     ("probabilities not updated", "mode_probabilities", "imm.weigh", predicted_probabilities, "likelihood.generic"),
     ("the converted covariance of other sign", "innovation_covariance", "reader.convert", other_sign, "converted.generic"),

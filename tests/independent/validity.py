@@ -8,7 +8,7 @@ from flint import fmpq, fmpq_mat
 FORMATS = ("immaculate-problem/1", "immaculate-problem/2")
 NEEDED = {"format", "id", "state", "modes", "measurement", "R", "filter", "transition", "initial", "measurements"}
 ALWAYS = {"about", "flags", "units", "conventions"}  # format 2 may leave them out
-ADDED = {"parameters", "let", "sensors", "conversions"}  # format 2 may have them
+ADDED = {"parameters", "let", "sensors", "conversions", "interaction"}  # format 2 may have them
 OF_A_MODE = {"name", "F", "Q"}
 ADDED_TO_A_MODE = {"f", "motion", "let", "parameters", "filter", "M", "state"}
 OF_A_STEP = {"step", "z"}
@@ -71,6 +71,7 @@ def check(raw):
     check_shared_noise(raw, size)
     check_given(raw, size, modes)
     check_conversions(raw, size)
+    check_interaction(raw)
     for k, at in enumerate(raw["measurements"]):
         check_step(raw, k, at, size, modes)
 
@@ -170,6 +171,15 @@ def check_conversions(raw, size):
         if "added" in asked:
             check_covariance(asked["added"], size, f"{place}.added")
     demand(len(set(found)) == len(found) and set(found) == needed, "format", "conversions")
+
+
+def check_interaction(raw):
+    """Where modes start from; fixed gains say it themselves, and modes with states of their own are mixed."""
+    if "interaction" not in raw:
+        return
+    demand(raw["interaction"] in ("imm", "gpb1", "unmixed"), "format", "interaction")
+    demand(raw["filter"]["kind"] != "fixed-gain", "unknown", "interaction")
+    demand(raw["interaction"] == "imm" or not raw.get("conversions"), "unknown", "interaction")
 
 
 def described(state):

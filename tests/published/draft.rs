@@ -125,6 +125,7 @@ impl Draft {
             noise: Vec::new(),
             sensors: Vec::new(),
             filter: FilterFile::Kalman {},
+            interaction: None,
             transition: identity(r),
             initial: InitialFile {
                 mode_probabilities: vec![0.0; r],

@@ -18,6 +18,7 @@
 //! - `correlated`: process and measurement noise that have something in common;
 //! - `iterated`: extended filters that linearise a measurement more than once;
 //! - `pairs`: the common tracker, two modes of constant velocity;
+//! - `interaction`: modes that start from the combined estimate, or each from its own;
 //! - `seen`: mixing and combination in steps that have a measurement;
 //! - `rejected`: problems that must be refused;
 //! - `write`: how a new case is certified, written and locked.
@@ -32,6 +33,7 @@ mod draft;
 mod equations;
 mod extended;
 mod fixed_gain;
+mod interaction;
 mod iterated;
 mod numbers;
 mod pairs;
@@ -70,6 +72,7 @@ pub fn all() -> Vec<ProblemFile> {
         pairs::all(),
         seen::all(),
         states::all(),
+        interaction::all(),
     ]
     .concat()
 }

@@ -180,6 +180,9 @@ pub(super) fn right(at: &Instance) -> Vec<Tree> {
             vec![given(Given::Chain).transpose() * leaf(Value::Traced(ModeProbabilities), Of::Before)]
         }
         MixingProbabilities if at.problem().interaction == Interaction::Unmixed => Vec::new(),
+        MixingProbabilities if at.problem().interaction == Interaction::Gpb1 => {
+            vec![leaf(Value::Traced(ModeProbabilities), Of::Before)]
+        }
         MixingProbabilities => {
             let joint = Tree::of(
                 Operation::Entrywise,

@@ -276,6 +276,9 @@ pub(super) fn extras(problem: &ProblemFile) -> Vec<ProblemFile> {
     for index in 0..problem.definitions.len() {
         plainer.push(with(problem, |problem| drop(problem.definitions.remove(index))));
     }
+    if problem.interaction.is_some() {
+        plainer.push(with(problem, |problem| problem.interaction = None));
+    }
     if problem.format == FORMAT_2 {
         plainer.push(with(problem, |problem| {
             FORMAT.clone_into(&mut problem.format);

@@ -7,8 +7,8 @@
 use super::draw::{Draw, rounded};
 use crate::model::Conversion;
 use crate::number::Real;
-use crate::oracle::filter_file::{CORRELATED_NOISE, STATE_CONVERSION};
-use crate::oracle::problem::{Conventions, FORMAT, FORMAT_2, ProblemFile, Rows};
+use crate::oracle::filter_file::{CORRELATED_NOISE, GPB1, STATE_CONVERSION};
+use crate::oracle::problem::{Conventions, FORMAT, FORMAT_2, InteractionFile, ProblemFile, Rows, UNMIXED};
 use serde::Deserialize;
 use serde_json::{Value, json};
 
@@ -22,7 +22,7 @@ pub struct Offer {
 }
 
 impl Offer {
-    /// The kinds of which there are problems: extended filters and correlated noises need format 2, and no states of their own are drawn.
+    /// The kinds of which there are problems: some need format 2, and no states of their own are drawn.
     pub(super) fn possible(&self) -> Vec<&str> {
         let kinds = self
             .kinds
@@ -35,8 +35,11 @@ impl Offer {
 
 /// Whether a kind needs format 2.
 fn is_new(kind: &str) -> bool {
-    kind.starts_with("extended") || kind == CORRELATED_NOISE
+    kind.starts_with("extended") || OF_KALMAN.contains(&kind)
 }
+
+/// What a Kalman filter may have, and not every one has.
+const OF_KALMAN: [&str; 3] = [CORRELATED_NOISE, GPB1, UNMIXED];
 
 /// Where a target moves and what is seen of it.
 #[derive(Clone, Copy, PartialEq)]
@@ -57,7 +60,7 @@ impl Scene {
     /// The scenes of a kind; the last three need format 2, and as many points as a state of five numbers has not too many of.
     fn of(kind: &str, offer: &Offer) -> &'static [Self] {
         match kind {
-            "kalman" | "fixed-gain" | "fixed-gain-unmixed" | CORRELATED_NOISE => &[Self::Linear],
+            "kalman" | "fixed-gain" | "fixed-gain-unmixed" | CORRELATED_NOISE | GPB1 | UNMIXED => &[Self::Linear],
             "converted" => &[Self::Polar],
             _ if offer.is_format_2 && most_components(kind) > 4 => {
                 &[Self::Linear, Self::Polar, Self::Formulas, Self::Turn, Self::Heading]
@@ -120,7 +123,7 @@ pub(super) fn scene(draw: &mut Draw, offer: &Offer) -> Option<ProblemFile> {
     let mut is_new = is_function || is_new(kind);
     let others: Vec<&str> = kinds
         .into_iter()
-        .filter(|other| !["converted", CORRELATED_NOISE].contains(other))
+        .filter(|other| *other != "converted" && !OF_KALMAN.contains(other))
         .filter(|other| !other.starts_with("fixed-gain") && most_components(other) >= n)
         .filter(|other| Scene::of(other, offer).contains(&scene))
         .collect();
@@ -129,7 +132,13 @@ pub(super) fn scene(draw: &mut Draw, offer: &Offer) -> Option<ProblemFile> {
         parts.modes[r - 1]["filter"] = self::filter(draw, other, n);
         is_new = true;
     }
-    assembled(draw, &parts, &filter, is_new)
+    let mut problem = assembled(draw, &parts, &filter, is_new)?;
+    problem.interaction = match kind {
+        GPB1 => Some(InteractionFile::Gpb1),
+        UNMIXED => Some(InteractionFile::Unmixed),
+        _ => None,
+    };
+    Some(problem)
 }
 
 /// The file.
@@ -169,7 +178,7 @@ fn assembled(draw: &mut Draw, parts: &Parts, filter: &Value, is_new: bool) -> Op
 /// A filter of a kind without gains.
 fn filter(draw: &mut Draw, kind: &str, n: usize) -> Value {
     match kind {
-        CORRELATED_NOISE => json!({ "kind": "kalman" }),
+        CORRELATED_NOISE | GPB1 | UNMIXED => json!({ "kind": "kalman" }),
         "kalman" | "extended" => json!({ "kind": kind }),
         "extended-iterated" => json!({ "kind": "extended", "iterations": 2 + draw.below(3) }),
         "unscented" => {

@@ -8,7 +8,7 @@ use crate::filter::kalman;
 use crate::gaussian::{Gaussian, mixture_covariance, mixture_mean};
 use crate::imm::probability::{mixing_probability, predicted_mode_probability};
 use crate::imm::state_conversion::{Reader, estimates_read};
-use crate::imm::{Problem, Step};
+use crate::imm::{Interaction, Problem, Step};
 use crate::number::Real;
 use nalgebra::{DMatrix, Dyn};
 use std::borrow::Cow;
@@ -30,8 +30,10 @@ fn of_chain<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
         // cⱼ = μⱼ; the mixing probabilities are those of the chain
         "chain-skipped" => {
             equations.predicted_mode_probability = |_, previous, _, j| previous.mode_probabilities[j].clone();
-            equations.mixing_probabilities =
-                |problem, previous, _, j| each(problem, |i| mixing(problem, previous, i, j));
+            if setup.problem.interaction != Interaction::Gpb1 {
+                equations.mixing_probabilities =
+                    |problem, previous, _, j| each(problem, |i| mixing(problem, previous, i, j));
+            }
         }
         // no chain and no mixing: filters side by side
         "modes-without-interaction" => {
@@ -47,6 +49,14 @@ fn of_chain<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
 fn of_mixing_probability<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     let entry = &mut setup.equations.mixing_probabilities;
     match id {
+        // μᵢ
+        "mixing-with-mode-probabilities-alone" => *entry = |_, previous, _, _| previous.mode_probabilities.clone(),
+        // pᵢⱼ μᵢ / cⱼ where each mode is to start from the combined estimate
+        "common-start-mixed-by-the-chain" => {
+            if setup.problem.interaction == Interaction::Gpb1 {
+                *entry = |problem, previous, _, j| each(problem, |i| mixing(problem, previous, i, j));
+            }
+        }
         // pⱼᵢ μᵢ / cⱼ
         "transition-transposed-in-mixing" => {
             *entry = |problem, previous, now, j| {

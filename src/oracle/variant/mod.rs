@@ -30,6 +30,7 @@
 //! An entry computes its value from the values that stand before it in the record, as the program that makes the mistake would: so it can
 //! be run along another program's values too. Two variants compose when they exchange different entries; of the same entry the second wins.
 
+mod applies;
 mod bearing;
 mod combination;
 mod convention;
@@ -51,14 +52,15 @@ mod state_angle;
 mod step;
 mod update;
 
+pub use applies::Applies;
+
 use super::setup::Setup;
-use crate::filter::{Filter, Transform, Update, cubature};
+use crate::filter::cubature;
 use crate::gaussian::Gaussian;
 use crate::imm::by_kind::{difference, seen};
 use crate::imm::equations::{Factored, measurement_matrix, motion_matrix, noise, used};
-use crate::imm::state_conversion::Reader;
 use crate::imm::{Interaction, Needs, Problem, Quantity, Step};
-use crate::model::{PolarComponent, Sensor};
+use crate::model::Sensor;
 use crate::number::Real;
 use crate::rule::Rule;
 use nalgebra::{DMatrix, DVector, Dyn};
@@ -86,129 +88,6 @@ impl Kind {
             Self::Mistake => "mistake",
             Self::Convention => "convention",
             Self::Form => "form",
-        }
-    }
-}
-
-/// Where a variant can make a difference.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Applies {
-    /// Everywhere.
-    All,
-    /// In filters with points.
-    Points,
-    /// In filters that convert range and bearing to a position.
-    Conversions,
-    /// In Kalman filters.
-    Kalman,
-    /// In filters that linearise the motion or the measurement.
-    Linearised,
-    /// Where process and measurement noise are correlated.
-    #[serde(rename = "correlated noises")]
-    CorrelatedNoises,
-    /// In problems whose steps differ.
-    #[serde(rename = "changing steps")]
-    ChangingSteps,
-    /// In filters that carry covariances.
-    Covariances,
-    /// In filters with fixed gains.
-    #[serde(rename = "fixed gains")]
-    FixedGains,
-    /// Where a motion sets an entry of the state to zero.
-    #[serde(rename = "embedded motion")]
-    EmbeddedMotion,
-    /// Where a mode lacks an entry of the state that another has.
-    #[serde(rename = "unequal dimensions")]
-    UnequalDimensions,
-    /// Where residuals of bearings are formed.
-    Angles,
-    /// Where an entry of the state is an angle.
-    #[serde(rename = "state angles")]
-    StateAngles,
-    /// Where modes have states of their own.
-    #[serde(rename = "state conversions")]
-    StateConversions,
-    /// Where a bearing is measured, converted or not.
-    Bearings,
-    /// Where a detection is missing.
-    Missed,
-    /// Where there are several modes.
-    #[serde(rename = "several modes")]
-    SeveralModes,
-}
-
-impl Applies {
-    /// The words for it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::All => "all",
-            Self::Points => "points",
-            Self::Conversions => "conversions",
-            Self::Kalman => "kalman",
-            Self::Linearised => "linearised",
-            Self::CorrelatedNoises => "correlated noises",
-            Self::ChangingSteps => "changing steps",
-            Self::Covariances => "covariances",
-            Self::FixedGains => "fixed gains",
-            Self::EmbeddedMotion => "embedded motion",
-            Self::UnequalDimensions => "unequal dimensions",
-            Self::Angles => "angles",
-            Self::StateAngles => "state angles",
-            Self::StateConversions => "state conversions",
-            Self::Bearings => "bearings",
-            Self::Missed => "missed",
-            Self::SeveralModes => "several modes",
-        }
-    }
-
-    /// Whether it can make a difference here, in any mode. Where it cannot, the variant leaves every value as it is.
-    pub fn to<T: Real>(self, setup: &Setup<T>) -> bool {
-        let problem = &setup.problem;
-        match self {
-            Self::All => true,
-            Self::Points => !draws_no_points(setup),
-            Self::Conversions => problem.conversion().is_some(),
-            Self::Kalman => !draws_points(setup) && problem.has_covariances(),
-            Self::Linearised => {
-                let linearises = |filter: &Filter<T, Dyn, Dyn>| {
-                    filter.predict == Transform::Linearised || filter.linearises_the_measurement()
-                };
-                problem.filters.iter().any(linearises)
-            }
-            Self::CorrelatedNoises => has_correlated_noises(setup),
-            Self::ChangingSteps => !setup.changes.is_empty(),
-            Self::Covariances => problem.has_covariances(),
-            Self::FixedGains => !problem.has_covariances(),
-            Self::EmbeddedMotion => problem
-                .modes
-                .iter()
-                .any(|mode| zero_rows(&mode.motion.matrix()).next().is_some()),
-            Self::UnequalDimensions => {
-                let lacks = |entry: usize| problem.modes.iter().filter(move |mode| mode.lacks(entry)).count();
-                (0..problem.n().0).any(|entry| (1..problem.modes.len()).contains(&lacks(entry)))
-            }
-            Self::Angles => {
-                let has_angle =
-                    |problem: &Problem<T, Dyn, Dyn>| (0..problem.m().0).any(|row| problem.sensor.is_angle(row));
-                let converts = |filter: &Filter<T, Dyn, Dyn>| matches!(filter.update, Update::Converted(_));
-                !problem.filters.iter().all(converts) && setup.problems().any(has_angle)
-            }
-            Self::StateAngles => {
-                let of_modes = (0..problem.modes.len()).map(Reader::Mode);
-                let mut readers = of_modes.chain([Reader::Common]);
-                readers.any(|reader| !problem.angles_of(reader).is_empty())
-            }
-            Self::StateConversions => has_state_conversions(setup),
-            Self::Bearings => {
-                let is_bearing =
-                    |sensor: &Sensor<T, Dyn, Dyn>, row| sensor.reports(row) == Some(PolarComponent::Bearing);
-                setup
-                    .problems()
-                    .any(|problem| (0..problem.m().0).any(|row| is_bearing(&problem.sensor, row)))
-            }
-            Self::Missed => setup.measurements.iter().any(Option::is_none),
-            Self::SeveralModes => problem.modes.len() > 1,
         }
     }
 }
@@ -361,9 +240,9 @@ pub fn apply<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     // A variant changes the problem of each step; the measurements and the initial estimate it changes once.
     let before = setup.clone();
     let is_one = apply_once(id, setup);
-    for (step, problem) in before.changes {
+    for (&step, problem) in &before.changes {
         let mut of_step = Setup {
-            problem,
+            problem: problem.clone(),
             equations: before.equations.clone(),
             initial: before.initial.clone(),
             measurements: before.measurements.clone(),

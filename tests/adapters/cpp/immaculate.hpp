@@ -347,7 +347,9 @@ inline std::vector<Case> cases(const std::string &folder, const Program &program
             if (!one.trace.contains("steps")) continue;
             const Part problem(one.problem);
             const bool is_taken = (has(program.kinds, "correlated-noise") || !has_correlated_noise(problem)) &&
-                                  (has(program.kinds, "state-conversion") || !problem.has("conversions"));
+                                  (has(program.kinds, "state-conversion") || !problem.has("conversions")) &&
+                                  (!problem.has("interaction") || problem["interaction"].text() == "imm" ||
+                                   has(program.kinds, problem["interaction"].text()));
             const bool is_asked = has(program.formats, one.problem.at("format")) && has(program.kinds, kind_of(problem)) && is_taken;
             if (is_asked) result.push_back(std::move(one));
         }
