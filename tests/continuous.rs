@@ -1,12 +1,18 @@
 //! Goal: the chain of a step of any length is e^(G T), whatever computes it, and what a file says of it is read or refused.
 //!
-//! Method: on enclosures against closed forms and against itself over other times; in rationals for what comes before; whole certified
-//! runs against the same problem with its chain written out. Kind of evidence: enclosed, exact.
+//! Method: on enclosures against closed forms and against itself over other times; in rationals for what comes before; certified runs step
+//! by step, and problems that must be refused. Kind of evidence: enclosed, exact.
 #![allow(clippy::unwrap_used, reason = "in tests a panic is the failure")]
 #![allow(clippy::float_cmp, reason = "the zeros of a chain are exact")]
 
+use immaculate::imm::Quantity;
 use immaculate::imm::continuous::{rates_of_sojourns, transition_over};
 use immaculate::number::{Enclosure, Field, Rational, Real};
+use immaculate::oracle::case;
+use immaculate::oracle::certify::certify;
+use immaculate::oracle::problem::ProblemFile;
+use immaculate::oracle::trace::Trace;
+use serde_json::{Value, json};
 
 type Chain<T> = Vec<Vec<T>>;
 
@@ -165,4 +171,153 @@ fn a_mean_sojourn_time_is_the_mean_of_the_time_to_leave() {
             assert_eq!(rates[i][j].clone() / -rates[i][i].clone(), jumps[i][j]);
         }
     }
+}
+
+// Problems
+
+fn published(id: &str) -> Value {
+    let mut all = case::all().unwrap().iter();
+    serde_json::from_str(all.find(|case| case.problem.id == id).unwrap().problem_text).unwrap()
+}
+
+fn refusal(problem: &Value) -> String {
+    ProblemFile::read(&problem.to_string()).unwrap_err().to_string()
+}
+
+fn certified(problem: &Value) -> Trace {
+    certify(&ProblemFile::read(&problem.to_string()).unwrap())
+        .unwrap()
+        .trace
+}
+
+/// Three Kalman filters along steps of five lengths, with rates.
+fn by_rates() -> Value {
+    published("rates.changing-steps")
+}
+
+/// The same by sojourn times: of rates that doubles divide exactly.
+fn by_sojourns() -> [Value; 2] {
+    let (mut rates, mut sojourns) = (by_rates(), by_rates());
+    rates["rates"] = json!([[-0.25, 0.125, 0.125], [0.375, -0.5, 0.125], [0.0, 1.0, -1.0]]);
+    sojourns.as_object_mut().unwrap().remove("rates");
+    sojourns["sojourn_times"] = json!([4.0, 2.0, 1.0]);
+    sojourns["jumps"] = json!([[0, 0.5, 0.5], [0.75, 0, 0.25], [0, 1, 0]]);
+    [rates, sojourns]
+}
+
+#[test]
+fn rates_and_sojourn_times_of_one_chain_are_one_problem() {
+    let [rates, sojourns] = by_sojourns();
+    assert_eq!(certified(&rates), certified(&sojourns));
+}
+
+/// cⱼ = Σᵢ pᵢⱼ μᵢ with the chain of the step's own length, in every step; at length zero nothing moves.
+#[test]
+fn every_step_has_the_chain_of_its_length() {
+    let problem = by_rates();
+    let trace = certified(&problem);
+    let rates: Chain<f64> = serde_json::from_value(problem["rates"].clone()).unwrap();
+    let mut before: Vec<f64> = serde_json::from_value(problem["initial"]["mode_probabilities"].clone()).unwrap();
+    for step in 1..=5 {
+        let length = problem["measurements"][step - 1]["T"].as_f64().unwrap();
+        let found = trace
+            .get(step, Quantity::PredictedModeProbabilities, 0)
+            .unwrap()
+            .clone();
+        let expected = at(|| {
+            let rates: Chain<Enclosure> = rates
+                .iter()
+                .map(|row| row.iter().map(|g| Enclosure::exact(*g)).collect())
+                .collect();
+            let chain = transition_over(&rates, &Enclosure::exact(length));
+            let part = |i: usize, j: usize| chain[i][j].clone() * Enclosure::exact(before[i]);
+            let sum = |j| (0..3).fold(Enclosure::integer(0), |sum, i| sum + part(i, j));
+            (0..3).map(|j| sum(j).to_f64().unwrap()).collect::<Vec<f64>>()
+        });
+        for (found, expected) in found.iter().zip(&expected) {
+            // The probabilities before were rounded once, each by half a unit.
+            assert!(
+                (found - expected).abs() <= 2.0 * f64::EPSILON * expected,
+                "{step}: {found} {expected}"
+            );
+        }
+        if length == 0.0 {
+            assert_eq!(found, before);
+        }
+        before.clone_from(trace.get(step, Quantity::ModeProbabilities, 0).unwrap());
+    }
+}
+
+#[test]
+fn who_does_not_claim_rates_is_not_asked_for_them() {
+    for problem in by_sojourns() {
+        let read = ProblemFile::read(&problem.to_string()).unwrap();
+        assert_eq!(read.kinds(), ["kalman", "continuous-chain"]);
+    }
+}
+
+#[test]
+fn a_chain_that_is_none_is_refused_in_a_sentence() {
+    let [rates, sojourns] = by_sojourns();
+    let changed = |problem: &Value, pointer: &str, value: Value| {
+        let mut problem = problem.clone();
+        *problem.pointer_mut(pointer).unwrap() = value;
+        refusal(&problem)
+    };
+    for (found, expected) in [
+        (
+            changed(&rates, "/rates/1", json!([0.375, -0.5, 0.25])),
+            "problem.rates[1]: sums to 0.125; it must sum to 0: its diagonal is minus the rate at which the mode is left (Kolmogorov 1931)",
+        ),
+        (
+            changed(&rates, "/rates/0", json!([0.0, -0.125, 0.125])),
+            "problem.rates[0][1]: is -0.125; it must not be negative",
+        ),
+        (
+            changed(&rates, "/rates", json!([[0.0]])),
+            "problem.rates: has 1 entries where 3 are needed",
+        ),
+        (
+            changed(&rates, "/measurements/2", json!({ "step": 3, "z": null })),
+            "problem.measurements[2].T: is missing: problem.rates needs the length of every step",
+        ),
+        (
+            changed(&rates, "/format", json!("immaculate-problem/1")),
+            "problem.rates: needs the format \"immaculate-problem/2\", and this file says \"immaculate-problem/1\"",
+        ),
+        (
+            changed(&sojourns, "/sojourn_times/1", json!(0)),
+            "problem.sojourn_times[1]: is 0; a mode lasts for some time, longer than 0 (Doob 1953)",
+        ),
+        (
+            changed(&sojourns, "/jumps/0", json!([0, 0.5, 0.25])),
+            "problem.jumps[0]: sums to 0.75; it must sum to 1 (Doob 1953)",
+        ),
+        (
+            changed(&sojourns, "/jumps/2", json!([0, 0.5, 0.5])),
+            "problem.jumps[2][2]: is 0.5; a mode that is left is left for another, so it must be 0",
+        ),
+    ] {
+        assert_eq!(found, expected);
+    }
+    let mut twice = rates.clone();
+    twice["transition"] = json!([[1, 0, 0], [0, 1, 0], [0, 0, 1]]);
+    assert_eq!(
+        refusal(&twice),
+        "problem: has more than one of `transition`, `rates` and `sojourn_times`; a chain is said once"
+    );
+    let without = |problem: &Value, key: &str| {
+        let mut problem = problem.clone();
+        problem.as_object_mut().unwrap().remove(key);
+        refusal(&problem)
+    };
+    assert_eq!(without(&rates, "rates"), "problem.transition: is missing");
+    assert_eq!(
+        without(&sojourns, "jumps"),
+        "problem.jumps: is missing, which says where a mode goes that is left after its `sojourn_times`"
+    );
+    assert_eq!(
+        without(&sojourns, "sojourn_times"),
+        "problem.sojourn_times: is missing, which says when a mode is left for its `jumps`"
+    );
 }

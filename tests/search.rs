@@ -48,9 +48,9 @@ fn a_drawn_problem_is_read_from_its_own_file() {
     }
 }
 
-/// Modes with states of their own are not drawn.
+/// Modes with states of their own, and chains in continuous time, are not drawn.
 fn is_drawn(kind: &&str) -> bool {
-    *kind != "state-conversion"
+    !["state-conversion", "continuous-chain"].contains(kind)
 }
 
 #[test]

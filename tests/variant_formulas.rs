@@ -9,17 +9,19 @@
 use immaculate::filter::fixed_gain::FixedGain;
 use immaculate::filter::{Filter, Update};
 use immaculate::gaussian::Gaussian;
+use immaculate::imm::continuous::rates_of_sojourns;
 use immaculate::imm::state_conversion::{Reader, StateConversion, StateConversions};
 use immaculate::imm::{Equations, Initial, Interaction, Problem, Quantity};
 use immaculate::model::function::Function;
 use immaculate::model::motion::{Mode, Motion};
 use immaculate::model::{Conversion, PolarComponent, Sensor};
+use immaculate::oracle::chain::ChainOfRates;
 use immaculate::oracle::run::Triangle;
 use immaculate::oracle::setup::Setup;
 use immaculate::oracle::trace::Trace;
 use immaculate::oracle::variant::{Kind, apply, catalogue};
 use immaculate::rule::{Rule, RuleName, unscented::unscented_in};
-use nalgebra::{DMatrix, DVector, Dyn, Matrix2, SMatrix, Vector2, dmatrix, dvector, matrix, vector};
+use nalgebra::{DMatrix, DVector, Dyn, Matrix2, Matrix3, SMatrix, Vector2, dmatrix, dvector, matrix, vector};
 use std::f64::consts::PI;
 
 /// What counts as the same number, in parts of the greatest number of its value: some hundred roundings.
@@ -39,6 +41,21 @@ use std::collections::BTreeMap;
 #[test]
 fn the_chain_and_the_mixing_are_their_formulas() {
     holds(&kalman(), 2, MIXING);
+}
+
+#[test]
+fn a_chain_that_is_made_of_rates_wrongly_is_its_formula() {
+    let mut scene = kalman();
+    let jumps = JUMPS.map(|row| row.to_vec()).to_vec();
+    let rates = rates_of_sojourns(&TIMES, &jumps);
+    let sojourns = Some((TIMES.to_vec(), jumps));
+    let chain = ChainOfRates {
+        rates,
+        sojourns,
+        interval: 0.5,
+    };
+    scene.rates.insert(0, chain);
+    holds(&scene, 2, RATES);
 }
 
 #[test]
@@ -567,6 +584,34 @@ const CORRELATED: &[Row] = &[
         rows(at.h() * at.pp(j) * at.h().transpose() + at.r())
     }),
     ("noise-correlation-omitted", Q::CrossCovariance, |at, j| rows(at.pp(j) * at.h().transpose())),
+];
+
+const TIMES: [f64; 3] = [4.0, 2.5, 1.25];
+const JUMPS: [[f64; 3]; 3] = [[0.0, 0.75, 0.25], [0.5, 0.0, 0.5], [0.875, 0.125, 0.0]];
+
+/// What leads from mode i to mode j in a step of ½ s: δᵢⱼ + gᵢⱼ/2.
+fn euler(i: usize, j: usize) -> f64 {
+    let rate = if i == j { -1.0 } else { JUMPS[i][j] } / TIMES[i];
+    f64::from(u8::from(i == j)) + rate / 2.0
+}
+
+/// e^(G/2) with gᵢⱼ = τᵢ rᵢⱼ, by its series.
+fn of_inverted_times(i: usize, j: usize) -> f64 {
+    let generator = Matrix3::from_fn(|i, j| if i == j { -1.0 } else { JUMPS[i][j] } * TIMES[i] / 2.0);
+    let (mut term, mut sum) = (Matrix3::identity(), Matrix3::identity());
+    for k in 1..60 {
+        term *= generator / f64::from(k);
+        sum += term;
+    }
+    sum[(i, j)]
+}
+
+#[rustfmt::skip]
+const RATES: &[Row] = &[
+    ("chain-by-an-euler-step", Q::PredictedModeProbabilities, |a, _| each(|j| (0..3).map(|i| euler(i, j) * a.mu(i)).sum())),
+    ("sojourn-times-as-rates", Q::PredictedModeProbabilities, |a, _| each(|j| {
+        (0..3).map(|i| of_inverted_times(i, j) * a.mu(i)).sum()
+    })),
 ];
 
 /// Where every mode is to start from the combined estimate.
@@ -1374,6 +1419,7 @@ fn kalman() -> Scene {
     let estimate = |(mean, covariance)| Gaussian { mean, covariance };
     Setup {
         changes: BTreeMap::new(),
+        rates: BTreeMap::new(),
         truths: vec![],
         problem: Problem {
             modes: modes.map(mode).to_vec(),
@@ -1557,6 +1603,7 @@ fn correlated() -> Scene {
 fn scalar() -> Scene {
     Setup {
         changes: BTreeMap::new(),
+        rates: BTreeMap::new(),
         truths: vec![],
         problem: Problem {
             modes: vec![Mode {

@@ -8,6 +8,7 @@ use immaculate::filter::converted::converted_covariance;
 use immaculate::filter::fixed_gain::FixedGain;
 use immaculate::filter::{Filter, Transform, Update};
 use immaculate::gaussian::{Gaussian, log_density};
+use immaculate::imm::continuous::{rates_of_sojourns, transition_over};
 use immaculate::imm::record::Input;
 use immaculate::imm::state_conversion::{Reader, StateConversion, StateConversions};
 use immaculate::imm::{Equations, Initial, Interaction, Needs, Problem, Quantity};
@@ -17,6 +18,7 @@ use immaculate::model::motion::{Mode, Motion};
 use immaculate::model::{Conversion, PolarComponent, Sensor};
 use immaculate::number::Enclosure;
 use immaculate::oracle::case::{self, Case, Expected};
+use immaculate::oracle::chain::ChainOfRates;
 use immaculate::oracle::run::Triangle;
 use immaculate::oracle::setup::Setup;
 use immaculate::oracle::trace::Trace;
@@ -189,7 +191,7 @@ fn a_variant_changes_nothing_where_it_does_not_apply() {
             left_alone.insert(format!("{:?}", variant.applies));
         }
     }
-    assert_eq!(left_alone.len(), 18, "each limit was met: {left_alone:?}");
+    assert_eq!(left_alone.len(), 20, "each limit was met: {left_alone:?}");
 }
 
 /// Exact, by hand: the words for where a variant can make a difference, in filters of each kind.
@@ -230,6 +232,7 @@ fn where_a_variant_applies_is_what_its_word_says() {
         expected(&[&["points", "covariances", "angles", "bearings"]])
     );
     assert_eq!(of(&fixed(Interaction::Imm)), expected(&[&["fixed gains"]]));
+    assert_eq!(of(&sojourns()), expected(&[&kalman, &["rates", "sojourn times"]]));
     assert_eq!(of(&common_start()), expected(&[&kalman, &["common start"]]));
     let separate = separate_states(Filter::kalman());
     assert_eq!(of(&separate), expected(&[&kalman, &["state conversions"]]));
@@ -599,6 +602,7 @@ fn scenes() -> Vec<Scene> {
         ("fixed gains", fixed(Interaction::Imm)),
         ("fixed gains, unmixed", fixed(Interaction::Unmixed)),
         ("common start", common_start()),
+        ("sojourn times", sojourns()),
         ("embedded", embedded()),
         ("unequal dimensions", unequal(embedded())),
         ("converted", converted(Conversion::Standard)),
@@ -639,6 +643,23 @@ fn linear(modes: usize) -> Setup<f64> {
 fn common_start() -> Setup<f64> {
     let mut setup = linear(3);
     setup.problem.interaction = Interaction::Gpb1;
+    setup
+}
+
+/// A chain that is given by sojourn times.
+fn sojourns() -> Setup<f64> {
+    let mut setup = linear(3);
+    let jumps = [[0.0, 0.75, 0.25], [0.5, 0.0, 0.5], [0.875, 0.125, 0.0]];
+    let (times, jumps) = (vec![3.0, 0.5, 2.0], jumps.map(|row| row.to_vec()).to_vec());
+    let (rates, interval) = (rates_of_sojourns(&times, &jumps), 0.7);
+    setup.problem.chain = transition_over(&rates, &interval);
+    let sojourns = Some((times, jumps));
+    let chain = ChainOfRates {
+        rates,
+        sojourns,
+        interval,
+    };
+    setup.rates.insert(0, chain);
     setup
 }
 
@@ -881,6 +902,7 @@ fn generic(n: usize, modes: usize, sensor: Sensor<f64, Dyn, Dyn>, filter: Filter
     let truth = |k: usize| Some(DVector::from_fn(n, |row, _| 6.0 * value(700 + 10 * k + row)));
     Setup {
         changes: BTreeMap::new(),
+        rates: BTreeMap::new(),
         truths: (0..5).map(truth).collect(),
         problem,
         equations: Equations::standard(),
@@ -935,6 +957,7 @@ fn on_enclosures(setup: &Setup<f64>) -> Setup<Enclosure> {
     let on_enclosures = |vector: &DVector<f64>| vector.map(Enclosure::exact);
     Setup {
         changes: BTreeMap::new(),
+        rates: BTreeMap::new(),
         truths: setup
             .truths
             .iter()

@@ -11,8 +11,8 @@ use crate::number::{Field, Real};
 
 /// Rates of a Markov chain from its mean sojourn times.
 ///
-/// Source: J. L. Doob, Stochastic Processes, 1953, chapter VI: the time that a chain stays in a state is exponential, and where it goes then
-/// does not depend on how long it stayed.
+/// Source: J. L. Doob, Stochastic Processes, 1953, chapter VI: the time that a chain stays in a state is exponential, and where it goes
+/// then does not depend on how long it stayed.
 ///
 /// ```text
 /// gᵢⱼ = rᵢⱼ / τᵢ for i ≠ j,   gᵢᵢ = −Σⱼ≠ᵢ gᵢⱼ
@@ -71,8 +71,8 @@ pub fn rates_of_sojourns<T: Field>(sojourn_times: &[T], jumps: &[Vec<T>]) -> Vec
 /// Why: in a short time dT the target leaves mode i for j with the probability gᵢⱼ dT. I + G T is the first two terms only: it is no
 /// chain at all where T is longer than a sojourn.
 ///
-/// What is left of the series after K terms is at most 2 a^(K+1)/(K+1)! in each entry, as a bounds the norm of A and each further term is at
-/// most half of the one before; number systems that know how far they are off take it in. A mode that cannot be reached keeps its zero.
+/// What is left of the series after K terms is at most 2 a^(K+1)/(K+1)! in each entry, as a bounds the norm of A and each further term is
+/// at most half of the one before; number systems that know how far they are off take it in. A mode that cannot be reached keeps its zero.
 /// Every row is divided by its sum, which is one: so errors of squaring do not add up in it. A number too large for all this leaves
 /// every entry undecided.
 ///

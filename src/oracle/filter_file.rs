@@ -1,5 +1,6 @@
 //! The filter of a problem file: its kind, with what the kind needs.
 
+use super::chain::CONTINUOUS_CHAIN;
 use super::problem::{Rows, if_there_at_all};
 use crate::imm::{Needs, Quantity};
 use schemars::JsonSchema;
@@ -24,7 +25,7 @@ pub const MIXINGS: [&str; 2] = ["mixed", UNMIXED];
 pub const UNMIXED: &str = "unmixed";
 
 /// The kinds of filter whose name is not that of a rule.
-const OTHER_KINDS: [&str; 11] = [
+const OTHER_KINDS: [&str; 12] = [
     "kalman",
     "extended",
     "extended-iterated",
@@ -34,6 +35,7 @@ const OTHER_KINDS: [&str; 11] = [
     "fixed-gain-unmixed",
     CORRELATED_NOISE,
     STATE_CONVERSION,
+    CONTINUOUS_CHAIN,
     GPB1,
     UNMIXED,
 ];

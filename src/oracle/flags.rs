@@ -3,7 +3,7 @@
 //! After this file the reader knows every word by which cases are marked and chosen, and what a problem with it is like.
 
 /// Every flag, and what a problem with it is like.
-pub const FLAGS: [(&str, &str); 57] = [
+pub const FLAGS: [(&str, &str); 58] = [
     (
         "single-equation",
         "All is trivial but one equation, or one group of them.",
@@ -146,6 +146,10 @@ pub const FLAGS: [(&str, &str); 57] = [
     (
         "correlated-noise",
         "The noises of motion and measurement have something in common.",
+    ),
+    (
+        "rates",
+        "The chain is given by rates or mean sojourn times, and the length of a step makes it.",
     ),
     (
         "interaction",

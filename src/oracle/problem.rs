@@ -3,6 +3,8 @@
 //! After this file the reader knows the formats `immaculate-problem/1` and `/2` from the code's side (`spec/formats.md` is their
 //! description). Format 1 is format 2 without what [`super::models`] adds. What must be true of a file is in `well_formed`.
 
+use super::chain::CONTINUOUS_CHAIN;
+pub use super::conventions::Conventions;
 use super::filter_file::{CORRELATED_NOISE, STATE_CONVERSION};
 pub use super::filter_file::{FAMILIES, FilterFile, FixedGainFile, InteractionFile, MIXINGS, RULES, UNMIXED, kinds};
 use super::invalid::{Class, Invalid};
@@ -76,8 +78,33 @@ pub struct ProblemFile {
     )]
     #[schemars(with = "InteractionFile")]
     pub interaction: Option<InteractionFile>,
-    /// `transition[i][j]` = P(mode j at k ∣ mode i at k−1).
+    /// `transition[i][j]` = P(mode j at k ∣ mode i at k−1); empty where the chain is given otherwise.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub transition: Rows,
+    /// `rates[i][j]`, the rate from mode i to mode j in a unit of time, in place of `transition`; rows sum to zero. Format 2.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "if_there_at_all"
+    )]
+    #[schemars(with = "Rows")]
+    pub rates: Option<Rows>,
+    /// How long each mode lasts on average, in place of `transition`. Format 2.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "if_there_at_all"
+    )]
+    #[schemars(with = "Vec<f64>")]
+    pub sojourn_times: Option<Vec<f64>>,
+    /// `jumps[i][j]` = P(mode j is next ∣ mode i is left), with `sojourn_times`. Format 2.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "if_there_at_all"
+    )]
+    #[schemars(with = "Rows")]
+    pub jumps: Option<Rows>,
     /// The estimate at step 0, a posterior.
     pub initial: InitialFile,
     /// The choices that the papers leave open.
@@ -207,60 +234,6 @@ pub(super) fn if_there_at_all<'de, D: Deserializer<'de>, V: Deserialize<'de>>(
     V::deserialize(deserializer).map(Some)
 }
 
-/// The choices that the papers leave open. The first four keys are always there; the others are where they make a difference.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Conventions {
-    /// `cholesky-lower`.
-    pub square_root: String,
-    /// `centre-point`.
-    pub angle_mean: String,
-    /// `mixed`.
-    pub first_step: String,
-    /// `full`.
-    pub log_likelihood: String,
-    /// `embedded`; where a mode sets an entry of the state to zero that another has.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub unequal_dimensions: Option<String>,
-    /// `reference`; where an entry of the state is an angle.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub state_angle_mean: Option<String>,
-    /// `at-measurement`; where measurements are converted.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub converted_covariance: Option<String>,
-}
-
-impl Conventions {
-    /// Whether a convention has this value here.
-    pub fn has(&self, key: &str, value: &str) -> bool {
-        let own: &str = match key {
-            "square_root" => &self.square_root,
-            "angle_mean" => &self.angle_mean,
-            "first_step" => &self.first_step,
-            "log_likelihood" => &self.log_likelihood,
-            "unequal_dimensions" => self.unequal_dimensions.as_deref().unwrap_or("embedded"),
-            "state_angle_mean" => self.state_angle_mean.as_deref().unwrap_or("reference"),
-            "converted_covariance" => self.converted_covariance.as_deref().unwrap_or("at-measurement"),
-            _ => return false,
-        };
-        own == value
-    }
-}
-
-impl Default for Conventions {
-    fn default() -> Self {
-        Self {
-            square_root: "cholesky-lower".into(),
-            angle_mean: "centre-point".into(),
-            first_step: "mixed".into(),
-            log_likelihood: "full".into(),
-            unequal_dimensions: None,
-            state_angle_mean: None,
-            converted_covariance: None,
-        }
-    }
-}
-
 impl ProblemFile {
     /// Reads a problem from JSON and checks it.
     ///
@@ -335,6 +308,9 @@ impl ProblemFile {
         }
         if !self.conversions.is_empty() {
             kinds.push(STATE_CONVERSION);
+        }
+        if self.has_rates() {
+            kinds.push(CONTINUOUS_CHAIN);
         }
         if self.interaction() != InteractionFile::Imm {
             kinds.push(self.interaction().name());

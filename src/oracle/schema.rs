@@ -49,7 +49,7 @@ pub(super) const KEYS_OF_FORMAT_1: [&str; 4] = ["about", "flags", "units", "conv
 
 /// A problem of one filter may have what its mode has at the top, and its estimate alone.
 fn with_short_form(schema: &mut Value, one_motion: &Value) {
-    let of_modes = ["modes", "transition"];
+    let of_modes = ["modes", "transition", "rates", "sojourn_times", "jumps"];
     for key in single::KEYS {
         schema["properties"][key] = schema["$defs"]["ModeFile"]["properties"][key].clone();
     }
@@ -58,7 +58,11 @@ fn with_short_form(schema: &mut Value, one_motion: &Value) {
     }
     let estimate = json!({ "$ref": "#/$defs/EstimateFile" });
     let any_initial = json!({ "anyOf": [schema["properties"]["initial"], estimate.clone()] });
-    let long = json!({ "required": of_modes, "properties": { "initial": schema["properties"]["initial"] } });
+    // A chain is said in one of three ways.
+    let one_chain =
+        json!([{ "required": ["transition"] }, { "required": ["rates"] }, { "required": ["sojourn_times", "jumps"] }]);
+    let initial = json!({ "initial": schema["properties"]["initial"] });
+    let long = json!({ "required": ["modes"], "oneOf": one_chain, "properties": initial });
     schema["properties"]["initial"] = any_initial;
     let nothing = |keys: &[&str]| -> Map<String, Value> {
         keys.iter()
@@ -90,7 +94,16 @@ fn of_format_1() -> Value {
         "measurements": { "items": step },
     } });
     // No value is of no type.
-    for key in ["parameters", "let", "conversions", "interaction", "sensors"] {
+    for key in [
+        "parameters",
+        "let",
+        "conversions",
+        "interaction",
+        "rates",
+        "sojourn_times",
+        "jumps",
+        "sensors",
+    ] {
         schema["properties"][key] = json!({ "enum": [] });
     }
     schema

@@ -3,6 +3,7 @@
 //! After this file the reader knows how a problem file comes into any number system, each number of the file as it is, or perturbed.
 
 use super::bound::{Bound, Functions};
+use super::chain::ChainOfRates;
 use super::invalid::{Class, Invalid};
 use super::problem::{
     FilterFile, InteractionFile, MeasurementAt, MeasurementFile, ModeFile, ProblemFile, Rows, UNMIXED,
@@ -38,6 +39,8 @@ pub struct Setup<T: Real> {
     pub truths: Vec<Option<DVector<T>>>,
     /// The problems of the steps, counted from 1, in which it is another.
     pub changes: BTreeMap<usize, Problem<T, Dyn, Dyn>>,
+    /// The rates of the chain in the steps, counted from 1, and at 0 those of the problem; empty where the chain is a matrix.
+    pub rates: BTreeMap<usize, ChainOfRates<T>>,
 }
 
 impl<T: Real> Setup<T> {
@@ -58,6 +61,12 @@ impl<T: Real> Setup<T> {
     /// The problem, and those of the steps in which it is another.
     pub(super) fn problems(&self) -> impl Iterator<Item = &Problem<T, Dyn, Dyn>> {
         std::iter::once(&self.problem).chain(self.changes.values())
+    }
+
+    /// The rates of a step, counted from 1, as those of a problem of its own; empty where the step says its chain, or no rates are given.
+    pub(super) fn rates_of(&self, step: usize) -> BTreeMap<usize, ChainOfRates<T>> {
+        let own = self.rates.get(&step);
+        own.map(|chain| (0, chain.clone())).into_iter().collect()
     }
 
     /// The problem of a step, counted from 1.
@@ -165,12 +174,13 @@ impl ProblemFile {
                 },
             },
             angles: self.angles_of_state(Reader::Common),
-            chain: self.transition.iter().map(|row| list(row)).collect(),
+            chain: self.chain(number, interval),
             sensor: self.sensor(0, &functions, number, interval)?,
             measurement_noise: matrix(&self.noise, number),
         };
         let setup = Setup {
             changes: self.changes(&problem, &functions, number, interval)?,
+            rates: self.rates_of_steps(number, interval),
             problem,
             equations: if self.lacks_consistency {
                 Equations::standard().without_consistency()
@@ -208,6 +218,15 @@ impl ProblemFile {
         self.modes.iter().zip(&functions.modes).map(of).collect()
     }
 
+    /// The rates of the chain: those of the problem at 0, and of each step without a chain of its own.
+    fn rates_of_steps<T: Real>(&self, number: fn(f64) -> T, interval: Option<f64>) -> BTreeMap<usize, ChainOfRates<T>> {
+        let own = self.measurements.iter().filter(|entry| entry.transition.is_none());
+        let own = own.map(|entry| (entry.step, entry.interval.or(interval)));
+        let all = std::iter::once((0, interval)).chain(own);
+        all.filter_map(|(step, interval)| Some((step, self.chain_of_rates(number, interval)?)))
+            .collect()
+    }
+
     /// The problems of the steps in which it is another.
     fn changes<T: Real>(
         &self,
@@ -222,6 +241,7 @@ impl ProblemFile {
             let interval = entry.interval.or(of_problem);
             if entry.interval.is_some() {
                 changed.modes = self.modes_in(functions, number, interval);
+                changed.chain = self.chain(number, interval);
                 if let Interaction::Converted(_) = changed.interaction {
                     changed.interaction = self.converted(functions, number, interval)?;
                 }

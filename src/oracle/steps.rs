@@ -157,6 +157,9 @@ impl ProblemFile {
             ("let", !self.definitions.is_empty()),
             ("conversions", !self.conversions.is_empty()),
             ("interaction", self.interaction.is_some()),
+            ("rates", self.rates.is_some()),
+            ("sojourn_times", self.sojourn_times.is_some()),
+            ("jumps", self.jumps.is_some()),
         ];
         if let Some((key, _)) = of_problem.into_iter().find(|(_, is_there)| *is_there) {
             return Some(format!("problem.{key}"));

@@ -112,7 +112,17 @@ fn missing(text: &str) -> Vec<String> {
     let required = schema["required"].as_array().into_iter().flatten();
     let required = required.filter_map(Value::as_str).chain(of_format_1.iter().copied());
     let missing = required.filter(|key| file.get(key).is_none());
-    missing.map(|key| format!("`{key}`")).collect()
+    let mut missing: Vec<String> = missing.map(|key| format!("`{key}`")).collect();
+    // A chain may be said otherwise; where it is not said at all, it has its place before the estimates.
+    let is_said = ["transition", "rates", "sojourn_times", "jumps"]
+        .iter()
+        .any(|key| file.get(key).is_some());
+    if !is_said {
+        let later = ["`initial`", "`measurements`"];
+        let place = missing.iter().position(|key| later.contains(&key.as_str()));
+        missing.insert(place.unwrap_or(missing.len()), "`transition`".to_owned());
+    }
+    missing
 }
 
 /// What a sentence of the JSON reader says of a place.

@@ -150,7 +150,7 @@ impl ProblemFile {
                 MeasurementFile::Model { .. } => {}
             }
         }
-        check_matrix("problem.transition", &self.transition, r, r)?;
+        self.check_chain()?;
         self.check_state_conversions()?;
         self.check_initial_shapes()
     }

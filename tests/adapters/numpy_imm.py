@@ -58,7 +58,7 @@ def ready(message, options):
         "formats": ["immaculate-problem/1", "immaculate-problem/2"],
         "kinds": [
             *["kalman", "extended", "unscented", "converted", *RULES],
-            *["state-conversion", "gpb1", "unmixed"],
+            *["state-conversion", "continuous-chain", "gpb1", "unmixed"],
         ],
         "echo": (np.array(echo["matrix"]) @ np.array(echo["vector"])).tolist(),
     }
@@ -177,10 +177,19 @@ def step_arguments(problem, entry, options):
         "measurement": measurement,
         "measurement_noise": noise,
         "conversion": conversion,
-        "chain": np.array(entry.get("transition", problem["transition"]), number),
+        **chain_of(problem, entry, known.get("T"), number),
         "angles": [*(own for _, own in of_modes), angles],
         "reads": reads_of(problem, [own for own, _ in of_modes], known, number),
     }
+
+
+def chain_of(problem, entry, interval, number):
+    """The chain of a step: a matrix, or rates or mean sojourn times with the length of the step."""
+    matrix = entry.get("transition", problem.get("transition"))
+    given = {key: problem.get(key) for key in ("rates", "sojourn_times", "jumps")}
+    given = {key: None if value is None else np.array(value, number) for key, value in given.items()}
+    chain = None if matrix is None else np.array(matrix, number)
+    return {"chain": chain, **given, "interval": interval}
 
 
 def names_and_angles(state):
@@ -793,6 +802,10 @@ class Imm:
         measurement_noise,
         conversion,
         chain,
+        rates,
+        sojourn_times,
+        jumps,
+        interval,
         angles,
         reads,
     ):
@@ -804,7 +817,29 @@ class Imm:
         self.measurement = measurement
         self.measurement_noise = measurement_noise  # R
         self.conversion = conversion  # of ranges and bearings to positions; None: as measured
+        if chain is None:
+            chain = self.chain_over(
+                self.rates_of(sojourn_times, jumps) if rates is None else rates, interval
+            )
         self.chain = chain  # chain[i, j] = P(mode j now | mode i before)
+
+    def rates_of(self, sojourn_times, jumps):
+        """A mode that lasts for tau on average is left at the rate 1/tau."""
+        return jumps / sojourn_times[:, None] - np.diag(1 / sojourn_times)
+
+    def chain_over(self, rates, interval):
+        """exp(G T): the first terms for a small part of the step, squared again and again."""
+        size = float(np.abs(rates).max() * interval)
+        halvings = max(0, math.ceil(math.log2(size)) + 4) if size > 0 else 0
+        step = rates * self.number(interval / 2**halvings)
+        chain = term = np.eye(len(rates), dtype=self.number)
+        for k in range(1, 20):
+            term = term @ step / self.number(k)
+            chain = chain + term
+        for _ in range(halvings):
+            chain = chain @ chain
+            chain /= chain.sum(axis=1, keepdims=True)
+        return chain
 
     def step(self, z):
         """One step with a measurement, or without a detection when z is None."""

@@ -14,8 +14,8 @@ class TransitionTransposed:
     """The chain is stored by columns: chain[j, i]."""
 
     def given(self, **arguments):
-        arguments["chain"] = arguments["chain"].T
         super().given(**arguments)
+        self.chain = self.chain.T
 
 
 class TransitionTransposedInMixing:
@@ -25,6 +25,20 @@ class TransitionTransposedInMixing:
         if predicted[mode.index] == 0:
             return super().mixing_probabilities(mode, predicted)
         return self.chain[mode.index, :] * self.mode_probabilities / predicted[mode.index]
+
+
+class ChainByAnEulerStep:
+    """I + G T: whoever wrote it knew no matrix exponential."""
+
+    def chain_over(self, rates, interval):
+        return np.eye(len(rates)) + rates * interval
+
+
+class SojournTimesAsRates:
+    """tau in the place of 1/tau."""
+
+    def rates_of(self, sojourn_times, jumps):
+        return (jumps - np.eye(len(jumps))) * sojourn_times[:, None]
 
 
 class MixingWithModeProbabilitiesAlone:
@@ -319,6 +333,8 @@ MISTAKES = {
     "state-conversion-covariance-not-added": StateConversionCovarianceNotAdded,
     "transition-transposed": TransitionTransposed,
     "transition-transposed-in-mixing": TransitionTransposedInMixing,
+    "chain-by-an-euler-step": ChainByAnEulerStep,
+    "sojourn-times-as-rates": SojournTimesAsRates,
     "mixing-with-mode-probabilities-alone": MixingWithModeProbabilitiesAlone,
     "common-start-mixed-by-the-chain": CommonStartMixedByTheChain,
     "mixing-skipped": MixingSkipped,

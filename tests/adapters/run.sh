@@ -187,6 +187,12 @@ END
     expect 0 "4 right of 4 cases" -- --case gpb1 --case unmixed -- "${numpy[@]}"
     expect 1 "FAULT mixing_probabilities" "MOST LIKELY" "(common-start-mixed-by-the-chain; mistake)" -- --case gpb1 \
         -- "${numpy[@]}" --mistake common-start-mixed-by-the-chain
+    # A chain in continuous time.
+    expect 0 "2 right of 2 cases" -- --case rates --case sojourns -- "${numpy[@]}"
+    for mistake in chain-by-an-euler-step sojourn-times-as-rates; do
+        expect 1 "FAULT predicted_mode_probabilities" "MOST LIKELY" "($mistake; mistake)" -- --case rates --case sojourns \
+            -- "${numpy[@]}" --mistake "$mistake"
+    done
     expect 1 "MOST LIKELY, TWO AT ONCE" "(mixed-spread-omitted; mistake)" "(determinant-omitted; mistake)" \
         -- "${short[@]}" -- "${numpy[@]}" --mistake mixed-spread-omitted --mistake determinant-omitted
 

@@ -147,9 +147,27 @@ def problem(draw, id):
         raw["measurements"].append(step(draw, scene, raw, k))
     if filter["kind"] != "fixed-gain" and count > 1 and draw.random() < 0.4:
         with_own_state(draw, raw, scene)
-    elif filter["kind"] != "fixed-gain" and draw.random() < 0.4:
+    if draw.random() < 0.2:
+        with_rates(draw, raw, count)
+    if filter["kind"] != "fixed-gain" and "conversions" not in raw and draw.random() < 0.4:
         raw["interaction"] = draw.choice(["imm", "gpb1", "unmixed"])
     return raw
+
+
+def with_rates(draw, raw, count):
+    """The chain by rates, or by sojourn times and jumps, of which some are zero."""
+    del raw["transition"]
+    if draw.random() < 0.5:
+        rates = [[0 if i == j or draw.random() < 0.2 else draw.randint(1, 24) / 16 for j in range(count)] for i in range(count)]
+        raw["rates"] = [[-sum(row) if i == j else rate for j, rate in enumerate(row)] for i, row in enumerate(rates)]
+        return
+    raw["sojourn_times"] = [number(draw, 0.3, 9) for _ in range(count)]
+    raw["jumps"] = [[0.0] * count for _ in range(count)]
+    for i in range(count if count > 1 else 0):
+        others = [j for j in range(count) if j != i]
+        parts = [draw.choice([0, 0.25, 0.5, 1])] if len(others) > 1 else []
+        for j, part in zip(others, [*parts, 1 - sum(parts)]):
+            raw["jumps"][i][j] = part
 
 
 def with_own_state(draw, raw, scene):

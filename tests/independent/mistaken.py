@@ -20,6 +20,7 @@ from filters import Estimate
 
 RIGHT = {
     "chain": reader.Problem.chain,
+    "chain over": reader.Problem.chain_over,
     "noise": reader.Problem.noise,
     "motion": reader.Problem.motion,
     "sensor": reader.Problem.sensor,
@@ -49,6 +50,13 @@ def chain_transposed(problem, at):
 
 def chain_of_the_problem(problem, at):
     return RIGHT["chain"](problem, {})
+
+
+def euler_step(problem, interval):
+    """I + G T, from a time so short that e^(G T) is nearly that."""
+    short = arb(2) ** -150
+    chain = RIGHT["chain over"](problem, short)
+    return [[(p - int(i == j)) / short * interval + int(i == j) for j, p in enumerate(row)] for i, row in enumerate(chain)]
 
 
 def mixing_transposed(chain, probabilities):
@@ -220,6 +228,7 @@ def nothing_added(function, added, estimate):
 EQUATIONS = [
     ("the chain transposed", "predicted_mode_probabilities", "reader.Problem.chain", chain_transposed, "chain.not-stationary"),
     ("the chain of another step", "predicted_mode_probabilities", "reader.Problem.chain", chain_of_the_problem, "steps.changing"),
+    ("an Euler step of the chain", "predicted_mode_probabilities", "reader.Problem.chain_over", euler_step, "sojourns.extended"),
     ("mixing probabilities transposed", "mixing_probabilities", "imm.mix_probabilities", mixing_transposed, "mixing.three-modes"),
     ("no spread of the means", "combined_prediction.covariance", "imm.mixture", without_spread, "combination.three-modes"),
     ("angles of the state mixed as numbers", "mixed.mean", "imm.mixture", mixed_as_numbers, "heading.extended"),

@@ -40,7 +40,24 @@ class Problem:
 
     def chain(self, at):
         """p_ij, row i: from mode i at k−1 to mode j at k."""
-        return [[exact(p) for p in row] for row in at.get("transition", self.raw["transition"])]
+        if "transition" in at or "transition" in self.raw:
+            return [[exact(p) for p in row] for row in at.get("transition", self.raw.get("transition"))]
+        return self.chain_over(exact(at.get("T", self.raw.get("parameters", {}).get("T"))))
+
+    def chain_over(self, interval):
+        """e^(G T) by FLINT's exponential; the diagonal of G is minus the sum of its row."""
+        raw, modes = self.raw, range(len(self.raw["modes"]))
+        if "rates" in raw:
+            rate = [[exact(g) for g in row] for row in raw["rates"]]
+        else:
+            rate = [[exact(p) / exact(tau) for p in row] for row, tau in zip(raw["jumps"], raw["sojourn_times"])]
+        for i in modes:
+            rate[i][i] = -sum((rate[i][j] for j in modes if j != i), arb(0))
+        chain = (arb_mat(rate) * interval).exp()
+        reached = {(i, j) for i in modes for j in modes if i == j or not rate[i][j].is_zero()}
+        for _ in modes:
+            reached |= {(i, j) for i, k in reached for l, j in reached if k == l}
+        return [[chain[i, j] if (i, j) in reached else arb(0) for j in modes] for i in modes]
 
     def truth(self, at):
         """The true state at a step."""

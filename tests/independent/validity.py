@@ -6,9 +6,9 @@ from fractions import Fraction
 from flint import fmpq, fmpq_mat
 
 FORMATS = ("immaculate-problem/1", "immaculate-problem/2")
-NEEDED = {"format", "id", "state", "modes", "measurement", "R", "filter", "transition", "initial", "measurements"}
-ALWAYS = {"about", "flags", "units", "conventions"}  # format 2 may leave them out
-ADDED = {"parameters", "let", "sensors", "conversions", "interaction"}  # format 2 may have them
+NEEDED = {"format", "id", "state", "modes", "measurement", "R", "filter", "initial", "measurements"}
+ALWAYS = {"about", "flags", "units", "conventions", "transition"}  # format 2 may leave them out
+ADDED = {"parameters", "let", "sensors", "conversions", "interaction", "rates", "sojourn_times", "jumps"}  # format 2 may have them
 OF_A_MODE = {"name", "F", "Q"}
 ADDED_TO_A_MODE = {"f", "motion", "let", "parameters", "filter", "M", "state"}
 OF_A_STEP = {"step", "z"}
@@ -58,7 +58,7 @@ def check(raw):
     check_structure(raw)
     check_names(raw)
     size, modes = len(raw["state"]), len(raw["modes"])
-    check_chain(raw["transition"], modes, "transition")
+    check_chain_of(raw, modes)
     check_probabilities(raw["initial"]["mode_probabilities"], modes, "initial.mode_probabilities")
     check_estimates(raw, size, modes)
     for j, mode in enumerate(raw["modes"]):
@@ -226,6 +226,33 @@ def check_step(raw, k, at, size, modes):
         demand(entry is None or math.isfinite(entry), "not-finite", f"{place}.z")
         demand(entry is None or component != "range" or entry >= 0, "range", f"{place}.z")
         demand(entry is None or component != "bearing" or abs(entry) <= 2 * math.pi, "angle", f"{place}.z")
+
+
+def check_chain_of(raw, modes):
+    """A matrix, rates whose rows sum to zero, or sojourn times with jumps: one of them, and the length of every step if it is needed."""
+    said = [key for key in ("transition", "rates", "sojourn_times") if key in raw]
+    demand(len(said) == 1 and ("jumps" in raw) == (said == ["sojourn_times"]), "format", "the chain")
+    if "transition" in raw:
+        return check_chain(raw["transition"], modes, "transition")
+    for k, at in enumerate(raw["measurements"]):
+        has_length = "T" in at or "T" in raw.get("parameters", {})
+        demand("transition" in at or has_length, "format", f"measurements[{k}].T")
+    rows = raw.get("rates", raw.get("jumps"))
+    check_matrix(rows, modes, modes, "the chain")
+    for i, row in enumerate(rows):
+        demand(all(value >= 0 for j, value in enumerate(row) if j != i), "not-a-probability", f"the chain, row {i}")
+    if "rates" in raw:
+        for i, row in enumerate(rows):
+            most = Fraction(modes, 10**15) * max(abs(Fraction(rate)) for rate in row)
+            demand(abs(sum(Fraction(rate) for rate in row)) <= most, "not-a-probability", f"rates[{i}]")
+        return None
+    check_numbers(raw["sojourn_times"], modes, "sojourn_times")
+    demand(all(time > 0 for time in raw["sojourn_times"]), "range", "sojourn_times")
+    for i, row in enumerate(rows):
+        demand(row[i] == 0, "not-a-probability", f"jumps[{i}]")
+        if modes > 1:
+            check_probabilities(row, modes, f"jumps[{i}]")
+    return None
 
 
 def check_chain(chain, modes, place):

@@ -127,6 +127,9 @@ impl Draft {
             filter: FilterFile::Kalman {},
             interaction: None,
             transition: identity(r),
+            rates: None,
+            sojourn_times: None,
+            jumps: None,
             initial: InitialFile {
                 mode_probabilities: vec![0.0; r],
                 modes: estimates,

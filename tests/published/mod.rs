@@ -18,6 +18,7 @@
 //! - `correlated`: process and measurement noise that have something in common;
 //! - `iterated`: extended filters that linearise a measurement more than once;
 //! - `pairs`: the common tracker, two modes of constant velocity;
+//! - `continuous`: chains given by rates or mean sojourn times;
 //! - `interaction`: modes that start from the combined estimate, or each from its own;
 //! - `seen`: mixing and combination in steps that have a measurement;
 //! - `rejected`: problems that must be refused;
@@ -27,6 +28,7 @@ mod angles;
 mod behaviours;
 mod chain;
 mod consistency;
+mod continuous;
 mod converted;
 mod correlated;
 mod draft;
@@ -73,6 +75,7 @@ pub fn all() -> Vec<ProblemFile> {
         seen::all(),
         states::all(),
         interaction::all(),
+        continuous::all(),
     ]
     .concat()
 }

@@ -48,7 +48,16 @@ pub(super) fn modes(problem: &ProblemFile) -> Vec<ProblemFile> {
                 .retain(|one| !is_of(Some(&one.from)) && !is_of(one.to.as_ref()));
             problem.initial.modes.remove(j);
             remove_probability(&mut problem.initial.mode_probabilities, j);
-            remove_from_chain(&mut problem.transition, j);
+            if !problem.transition.is_empty() {
+                remove_from_chain(&mut problem.transition, j);
+            }
+            if let Some(rates) = &mut problem.rates {
+                remove_from_rates(rates, j);
+            }
+            problem.sojourn_times.iter_mut().for_each(|times| {
+                times.remove(j);
+            });
+            problem.jumps.iter_mut().for_each(|jumps| remove_from_chain(jumps, j));
             if let FilterFile::FixedGain { modes, .. } = &mut problem.filter {
                 modes.remove(j);
             }
@@ -70,6 +79,15 @@ fn remove_from_chain(chain: &mut Rows, j: usize) {
     chain.remove(j);
     for row in chain {
         remove_probability(row, j);
+    }
+}
+
+/// Removes a mode; the others are left less often by the rate at which they were left for it.
+fn remove_from_rates(rates: &mut Rows, j: usize) {
+    remove_both(rates, j);
+    for (i, row) in rates.iter_mut().enumerate() {
+        row[i] = 0.0;
+        row[i] = -row.iter().sum::<f64>();
     }
 }
 

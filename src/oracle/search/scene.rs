@@ -7,6 +7,7 @@
 use super::draw::{Draw, rounded};
 use crate::model::Conversion;
 use crate::number::Real;
+use crate::oracle::chain::CONTINUOUS_CHAIN;
 use crate::oracle::filter_file::{CORRELATED_NOISE, GPB1, STATE_CONVERSION};
 use crate::oracle::problem::{Conventions, FORMAT, FORMAT_2, InteractionFile, ProblemFile, Rows, UNMIXED};
 use serde::Deserialize;
@@ -22,13 +23,13 @@ pub struct Offer {
 }
 
 impl Offer {
-    /// The kinds of which there are problems: some need format 2, and no states of their own are drawn.
+    /// The kinds of which there are problems: some need format 2, and no states of their own and no rates are drawn.
     pub(super) fn possible(&self) -> Vec<&str> {
         let kinds = self
             .kinds
             .iter()
             .map(String::as_str)
-            .filter(|kind| *kind != STATE_CONVERSION);
+            .filter(|kind| ![STATE_CONVERSION, CONTINUOUS_CHAIN].contains(kind));
         kinds.filter(|kind| self.is_format_2 || !is_new(kind)).collect()
     }
 }

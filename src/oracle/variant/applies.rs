@@ -52,6 +52,11 @@ pub enum Applies {
     /// Where all modes start from the combined estimate.
     #[serde(rename = "common start")]
     CommonStart,
+    /// Where the chain is given by rates or sojourn times.
+    Rates,
+    /// Where it is given by sojourn times.
+    #[serde(rename = "sojourn times")]
+    SojournTimes,
     /// Where a bearing is measured, converted or not.
     Bearings,
     /// Where a detection is missing.
@@ -80,6 +85,8 @@ impl Applies {
             Self::StateAngles => "state angles",
             Self::StateConversions => "state conversions",
             Self::CommonStart => "common start",
+            Self::Rates => "rates",
+            Self::SojournTimes => "sojourn times",
             Self::Bearings => "bearings",
             Self::Missed => "missed",
             Self::SeveralModes => "several modes",
@@ -125,6 +132,8 @@ impl Applies {
             }
             Self::StateConversions => has_state_conversions(setup),
             Self::CommonStart => problem.interaction == Interaction::Gpb1,
+            Self::Rates => !setup.rates.is_empty(),
+            Self::SojournTimes => setup.rates.values().any(|chain| chain.sojourns.is_some()),
             Self::Bearings => {
                 let is_bearing =
                     |sensor: &Sensor<T, Dyn, Dyn>, row| sensor.reports(row) == Some(PolarComponent::Bearing);

@@ -2,10 +2,12 @@
 //!
 //! After this file the reader knows how the two indices of a Markov chain, and the means about which a spread is taken, go astray.
 
+use super::super::chain::ChainOfRates;
 use super::super::setup::Setup;
 use crate::filter::extended::motion_jacobian;
 use crate::filter::kalman;
 use crate::gaussian::{Gaussian, mixture_covariance, mixture_mean};
+use crate::imm::continuous::{rates_of_sojourns, transition_over};
 use crate::imm::probability::{mixing_probability, predicted_mode_probability};
 use crate::imm::state_conversion::{Reader, estimates_read};
 use crate::imm::{Interaction, Problem, Step};
@@ -27,6 +29,24 @@ fn of_chain<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     match id {
         // cⱼ = Σᵢ pⱼᵢ μᵢ, and the mixing probabilities by the same matrix
         "transition-transposed" => setup.problem.chain = transposed(&setup.problem.chain),
+        // I + G T in the place of e^(G T)
+        "chain-by-an-euler-step" => {
+            if let Some(ChainOfRates { rates, interval, .. }) = setup.rates.get(&0) {
+                setup.problem.chain = euler_step(rates, interval);
+            }
+        }
+        // the rate τᵢ in the place of 1/τᵢ
+        "sojourn-times-as-rates" => {
+            if let Some(ChainOfRates {
+                sojourns: Some((times, jumps)),
+                interval,
+                ..
+            }) = setup.rates.get(&0)
+            {
+                let inverses: Vec<T> = times.iter().map(|time| T::one() / time.clone()).collect();
+                setup.problem.chain = transition_over(&rates_of_sojourns(&inverses, jumps), interval);
+            }
+        }
         // cⱼ = μⱼ; the mixing probabilities are those of the chain
         "chain-skipped" => {
             equations.predicted_mode_probability = |_, previous, _, j| previous.mode_probabilities[j].clone();
@@ -308,6 +328,13 @@ pub(super) fn with_inner_products<T: Real>(
 /// The squares of weights.
 pub(super) fn squared<T: Real>(weights: &[T]) -> Vec<T> {
     weights.iter().map(|weight| weight.clone() * weight.clone()).collect()
+}
+
+/// I + G T.
+fn euler_step<T: Real>(rates: &[Vec<T>], interval: &T) -> Vec<Vec<T>> {
+    let entry = |i: usize, j: usize, rate: &T| identity::<T>(i, j) + rate.clone() * interval.clone();
+    let of_row = |(i, row): (usize, &Vec<T>)| row.iter().enumerate().map(|(j, rate)| entry(i, j, rate)).collect();
+    rates.iter().enumerate().map(of_row).collect()
 }
 
 fn transposed<T: Real>(chain: &[Vec<T>]) -> Vec<Vec<T>> {

@@ -248,6 +248,7 @@ pub fn apply<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
             measurements: before.measurements.clone(),
             truths: before.truths.clone(),
             changes: BTreeMap::new(),
+            rates: before.rates_of(step),
         };
         apply_once(id, &mut of_step);
         setup.changes.insert(step, of_step.problem);

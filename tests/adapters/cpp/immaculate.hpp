@@ -348,6 +348,7 @@ inline std::vector<Case> cases(const std::string &folder, const Program &program
             const Part problem(one.problem);
             const bool is_taken = (has(program.kinds, "correlated-noise") || !has_correlated_noise(problem)) &&
                                   (has(program.kinds, "state-conversion") || !problem.has("conversions")) &&
+                                  (has(program.kinds, "continuous-chain") || problem.has("transition")) &&
                                   (!problem.has("interaction") || problem["interaction"].text() == "imm" ||
                                    has(program.kinds, problem["interaction"].text()));
             const bool is_asked = has(program.formats, one.problem.at("format")) && has(program.kinds, kind_of(problem)) && is_taken;

@@ -1,7 +1,7 @@
 % immaculate.is_asked(filter, problem): whether a filter is asked for a problem: by its format, and by the name of the problem's filter.
 %
 % Noises of motion and measurement that are correlated (M of a mode), modes with states of their own, and modes that do not start from mixed
-% estimates (interaction) are for filters that say so.
+% estimates (interaction), and chains in continuous time, are for filters that say so.
 function result = is_asked(filter, problem)
   kind = problem.filter.kind;
   if strcmp(kind, 'cubature')
@@ -14,6 +14,10 @@ function result = is_asked(filter, problem)
   is_correlated = isfield(problem, 'modes') && iscell(problem.modes) && any(cellfun(@(mode) isfield(mode, 'M'), problem.modes));
   is_converted = isfield(problem, 'conversions');
   if is_correlated && ~any(strcmp('correlated-noise', filter.kinds)) || is_converted && ~any(strcmp('state-conversion', filter.kinds))
+    result = false;
+    return
+  end
+  if ~isfield(problem, 'transition') && ~any(strcmp('continuous-chain', filter.kinds))
     result = false;
     return
   end
