@@ -53,13 +53,11 @@ impl ProblemFile {
 
     /// The chain of a step of this length.
     pub(super) fn chain<T: Real>(&self, number: fn(f64) -> T, interval: Option<f64>) -> Vec<Vec<T>> {
-        match self.chain_of_rates(number, interval) {
-            Some(chain) => transition_over(&chain.rates, &chain.interval),
-            None => {
-                let row = |row: &Vec<f64>| row.iter().map(|&value| number(value)).collect();
-                self.transition.iter().map(row).collect()
-            }
+        if let Some(chain) = self.chain_of_rates(number, interval) {
+            return transition_over(&chain.rates, &chain.interval);
         }
+        let row = |row: &Vec<f64>| row.iter().map(|&value| number(value)).collect();
+        self.transition.iter().map(row).collect()
     }
 
     /// The chain is said once, has the right shape, and knows how long a step is if it must.
