@@ -9,7 +9,7 @@ use immaculate::filter::kalman::{cross_covariance, innovation_covariance, predic
 use immaculate::filter::update::{gain, updated_covariance};
 use immaculate::gaussian::Gaussian;
 use immaculate::imm::{Imm, Initial, Interaction, Problem};
-use immaculate::matrix::ldl;
+use immaculate::matrix::{is_positive_definite, is_positive_semidefinite, ldl};
 use immaculate::model::acceleration::{
     acceleration_part, acceleration_response, constant_acceleration, embedded_constant_velocity,
     embedded_velocity_response, position_matrix, response_noise,
@@ -21,10 +21,12 @@ use immaculate::model::{
 use immaculate::number::{Enclosure, Field, Rational, RationalFunction, Real};
 use immaculate::paper::derbez2000::instances;
 use immaculate::paper::monte_carlo::Generator;
+use immaculate::steady::by_hand::ByHand;
 use immaculate::steady::certificate::{Edge, NotProven, Product, Quadratics};
 use immaculate::steady::certificate_file::{
     CertificateFile, FiltersFile, InvalidCertificate, Noises, ProofFile, read_number,
 };
+use immaculate::steady::closed_loops::{ClosedLoops, Entries};
 use immaculate::steady::gains;
 use immaculate::steady::linear::{solve, stein};
 use immaculate::steady::map::Map;
@@ -33,7 +35,7 @@ use immaculate::steady::polynomial::{characteristic_polynomial, has_radius_below
 use immaculate::steady::reach::{polynomial_text, unseen_part};
 use immaculate::steady::riccati::{NoSteadyState, Riccati, SteadyState};
 use immaculate::steady::verdict::{Depth, Filters, StabilityVerdict, rows_text, word_text};
-use nalgebra::{Matrix1, Matrix2, Matrix3, SMatrix, Vector2, Vector3};
+use nalgebra::{Const, Matrix1, Matrix2, Matrix3, SMatrix, Vector2, Vector3};
 use num_traits::{One, Zero};
 
 type Unknown = RationalFunction;
@@ -653,7 +655,7 @@ fn a_graph_has_only_nodes_and_letters_that_are_there() {
 #[test]
 fn a_graph_that_remembers_goes_from_the_last_letters_to_the_next_ones() {
     for letters in [2, 3] {
-        let edges = Quadratics::<3>::memory(letters, 2);
+        let edges = Edge::memory(letters, 2);
         assert_eq!(edges.len(), letters.pow(3));
         for (a, b, c) in (0..letters).flat_map(|a| (0..letters).flat_map(move |b| (0..letters).map(move |c| (a, b, c))))
         {
@@ -748,12 +750,12 @@ fn a_common_form_proves_stability_and_a_spoilt_one_does_not() {
     let filters = Filters::Roots([rational("1/3"), rational("1/2")]);
     let form = rationals([["12", "-2", "-2"], ["-2", "7", "-6"], ["-2", "-6", "20"]]);
     let proof = Quadratics {
-        edges: Quadratics::<3>::memory(2, 0),
+        edges: Edge::memory(2, 0),
         forms: vec![form.clone()],
     };
     filters.check_stable(&proof).unwrap();
     assert_eq!(rows_text(&proof.forms[0]), "[12 -2 -2; -2 7 -6; -2 -6 20]");
-    let spoilt = |change: &dyn Fn(&mut Quadratics<3>)| {
+    let spoilt = |change: &dyn Fn(&mut Quadratics)| {
         let mut proof = proof.clone();
         change(&mut proof);
         filters.check_stable(&proof).unwrap_err()
@@ -815,6 +817,92 @@ fn whatever_is_decided_is_proven() {
             StabilityVerdict::Undecided { growth } => panic!("{v} {a}: {growth}"),
         }
     }
+}
+
+/// Exact: the joint spectral radius of two numbers is the greater magnitude, that of two shears that undo nothing is the golden ratio.
+#[test]
+fn the_joint_spectral_radius_is_between_its_bounds() {
+    let number = |text: &str| SMatrix::<Rational, 1, 1>::new(rational(text));
+    let shears = [rationals([["1", "1"], ["0", "1"]]), rationals([["1", "0"], ["1", "1"]])];
+    let bounds = |loops: ClosedLoops<Const<1>>| {
+        let found = loops.bounds(Depth::default(), &loops.decide(Depth::default()));
+        (found.below, found.above.unwrap().0)
+    };
+    for (a, b, radius) in [("1/2", "-3/4", "3/4"), ("5/4", "-2", "2"), ("0", "1/3", "1/3")] {
+        let (below, above) = bounds(ClosedLoops::new(Entries::Exact(vec![number(a), number(b)])));
+        let radius = rational(radius);
+        assert!(below <= radius && radius < above, "{below} {above}");
+        assert!((above - below).to_f64() < 2e-3 * radius.to_f64() + 2e-4);
+    }
+    let loops = ClosedLoops::new(Entries::Exact(shears.to_vec()));
+    let found = loops.bounds(Depth::default(), &loops.decide(Depth::default()));
+    // ((1 + √5)/2 = 1.618…)
+    assert_eq!(found.below, rational("1.618"));
+    let (rate, forms) = found.above.unwrap();
+    assert!(rate > rational("1.618") && rate < rational("1.63"), "{rate}");
+    // What is said of the rate is what the forms prove, and a rate below the radius is not proven by them.
+    loops.check_rate(&forms, &rate).unwrap();
+    assert!(loops.check_rate(&forms, &rational("1.618")).is_err());
+    assert_eq!(
+        loops.is_radius_below(&found.word, &rational("1.618").pow(2)),
+        Some(false)
+    );
+    assert_eq!(
+        loops.is_radius_below(&found.word, &rational("1.6181").pow(2)),
+        Some(true)
+    );
+}
+
+/// Exact: a word counts only if the chain can repeat it.
+#[test]
+fn a_product_that_the_chain_does_not_allow_proves_nothing() {
+    let filters = Filters::Roots([rational("3/4"), rational("1/6")]);
+    let mut loops = filters.closed_loops();
+    assert!(matches!(loops.decide(Depth::default()), StabilityVerdict::Unstable(_)));
+    // From acceleration there is no way back to velocity.
+    loops.follows[1][0] = false;
+    let StabilityVerdict::Undecided { growth } = loops.decide(Depth::default()) else {
+        panic!("only words of one letter can be repeated, and each of them shrinks")
+    };
+    assert!(growth < 1.0);
+}
+
+/// Exact: at every corner of the box around C, and so that the slack is no greater than the worst that its formula covers.
+#[test]
+fn a_proof_by_hand_holds_for_every_matrix_within_its_distance() {
+    let filters = Filters::of_noises(&rational("2"), &rational("0.05"), [rational("5"), rational("5")]);
+    let loops = filters.closed_loops();
+    let form = rationals([["50", "21", "-1"], ["21", "12", "-1"], ["-1", "-1", "1"]]);
+    let proof = Quadratics {
+        edges: Edge::memory(2, 0),
+        forms: vec![form.clone()],
+    };
+    let by_hand = ByHand::new(&loops, &proof).unwrap();
+    assert!(by_hand.distance.is_positive());
+    for found in &by_hand.edges {
+        let c = &by_hand.matrices[found.edge.letter];
+        assert!(found.pivots.iter().all(Rational::is_positive));
+        for corner in 0..1 << 9_u32 {
+            let a = Matrix3::from_fn(|i, j| {
+                let sign = if corner >> (3 * i + j) & 1 == 1 { "1" } else { "-1" };
+                c[(i, j)].clone() + by_hand.distance.clone() * rational(sign)
+            });
+            let decrease = &form - a.transpose() * &form * &a;
+            // Above what was printed, and so positive definite.
+            let printed = Matrix3::from_fn(|i, j| found.matrix[(i, j)].clone());
+            assert!(is_positive_semidefinite(&(&decrease - printed)), "corner {corner}");
+            assert!(is_positive_definite(&decrease), "corner {corner}");
+        }
+    }
+    // Fractions of few digits need no distance, and a form that proves nothing has no proof.
+    let exact = Filters::Roots([rational("1/3"), rational("1/2")]).closed_loops();
+    let proof = Quadratics {
+        edges: Edge::memory(2, 0),
+        forms: vec![rationals([["12", "-2", "-2"], ["-2", "7", "-6"], ["-2", "-6", "20"]])],
+    };
+    assert_eq!(ByHand::new(&exact, &proof).unwrap().distance, rational("0"));
+    let unstable = Filters::Roots([rational("3/4"), rational("1/6")]).closed_loops();
+    assert_eq!(ByHand::new(&unstable, &proof), None);
 }
 
 // Certificates as files (exact, enclosed)

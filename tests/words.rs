@@ -39,7 +39,7 @@ use immaculate::report::reproduction::SideBySide;
 use immaculate::rule::RuleName;
 use immaculate::rule::unscented::Parameters;
 use immaculate::statistics::Estimate;
-use immaculate::steady::certificate::Quadratics;
+use immaculate::steady::certificate::{Edge, Quadratics};
 use immaculate::steady::map::Map;
 use immaculate::steady::simulated::Grid;
 use immaculate::steady::verdict::{Depth, Filters, StabilityVerdict};
@@ -1000,7 +1000,7 @@ fn pairs_of_fixed_gain_filters_that_are_stable_unstable_and_undecided() {
         };
         let filters = Filters::Roots(roots);
         let verdict = filters.decide(depth);
-        let answer = report::stability::StabilityAnswer::new(&filters, verdict);
+        let answer = report::stability::StabilityAnswer::new(&filters, [q(1, 1), q(1, 1)], depth, verdict);
         text.push_str(&report::stability::text("Two filters.", &answer));
         let _ = write!(
             text,
@@ -1010,10 +1010,18 @@ fn pairs_of_fixed_gain_filters_that_are_stable_unstable_and_undecided() {
     }
     // Eight forms, of which four are shown; that they prove nothing is not asked here.
     let verdict = StabilityVerdict::Stable(Quadratics {
-        edges: Quadratics::<3>::memory(2, 3),
+        edges: Edge::memory(2, 3),
         forms: (1..=8).map(|k| Matrix3::from_diagonal_element(q(k, 1))).collect(),
     });
-    let answer = report::stability::StabilityAnswer::new(&Filters::Roots([q(1, 2), q(1, 2)]), verdict);
+    let (filters, depth) = (
+        Filters::Roots([q(1, 2), q(1, 2)]),
+        Depth {
+            word: 3,
+            run: 2,
+            memory: 0,
+        },
+    );
+    let answer = report::stability::StabilityAnswer::new(&filters, [q(1, 1), q(1, 1)], depth, verdict);
     text.push_str(&report::stability::text("Two filters.", &answer));
     insta::assert_snapshot!("stability", text);
 }

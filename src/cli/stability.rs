@@ -77,7 +77,8 @@ pub fn run(arguments: &StabilityArguments) -> Result<Done, Refusal> {
     }
     let (filters_file, about) = described(arguments);
     let filters = filters_file.filters().map_err(Refusal::request)?;
-    let answer = stability::StabilityAnswer::new(&filters, filters.decide(depth(arguments)));
+    let (depth, units) = (depth(arguments), filters_file.units().map_err(Refusal::request)?);
+    let answer = stability::StabilityAnswer::new(&filters, units, depth, filters.decide(depth));
     let certificate = CertificateFile::new(about.clone(), filters_file, &answer.verdict);
     if let Some(path) = &arguments.certificate {
         let Some(certificate) = &certificate else {

@@ -37,6 +37,7 @@ pub mod rule;
 pub mod search;
 pub mod stability;
 pub mod stability_map;
+mod stability_proof;
 pub mod trace;
 pub mod variants;
 pub mod verdict;

@@ -3,23 +3,28 @@
 //! After this file the reader knows what `immaculate stability` prints: the gains, the spectral radii, the verdict on both readings of the
 //! update, and the proof, so that it can be checked by hand or with another program.
 
+use super::stability_proof::{Proof, word};
 use super::{table, wrapped};
 use crate::number::{Enclosure, Field, Rational};
 use crate::statistics::estimate::figure;
-use crate::steady::certificate::{Product, Quadratics};
+use crate::steady::certificate::Product;
 use crate::steady::certificate_file::CertificateFile;
+use crate::steady::closed_loops::{Bounds, ClosedLoops};
 use crate::steady::gains;
 use crate::steady::map::{Map, greatest_frozen_radius};
 use crate::steady::search::spectral_radius;
-use crate::steady::verdict::{BITS, Filters, LETTERS, StabilityVerdict, rows_text, word_text};
+use crate::steady::verdict::{BITS, Depth, Filters, LETTERS, StabilityVerdict, word_text};
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// Digits of gains that are printed; they are certain.
-const DIGITS: u32 = 12;
+/// The most digits that are printed; only those are that every number of an enclosure is rounded to.
+const DIGITS: u32 = 40;
 
-/// One filter's steady state, as proven decimals; in coordinates with t = 1 and R = 1.
+/// The width in which a spectral radius is enclosed: 10⁻¹².
+const RADIUS_DIGITS: u32 = 12;
+
+/// One filter's steady state, as proven decimals.
 #[derive(Debug, Clone, Serialize)]
 pub struct Steady {
     /// Its name.
@@ -28,66 +33,146 @@ pub struct Steady {
     pub tracking_index: String,
     /// θ.
     pub damping_root: String,
-    /// α, β, γ/2: the gain is [α, β/t, γ/(2t²)].
+    /// α.
+    pub alpha: String,
+    /// β.
+    pub beta: String,
+    /// γ.
+    pub gamma: String,
+    /// K = [α, β/t, γ/(2t²)].
     pub gain: [String; 3],
-    /// S/R.
+    /// S, m².
     pub innovation_variance: String,
+    /// [α, β, γ/2]: K where t = 1.
+    pub scaled_gain: [String; 3],
+    /// S/R.
+    pub scaled_innovation_variance: String,
     /// The spectral radius of (I − K H) F.
-    pub spectral_radius: f64,
+    pub spectral_radius: Between,
 }
+
+/// A number between two decimals, both proven.
+#[derive(Debug, Clone, Serialize)]
+pub struct Between {
+    /// It is this or more.
+    pub at_least: String,
+    /// It is less than this.
+    pub below: String,
+}
+
+/// The units of the filters: t, s, and R, m². One and one where filters are given by their damping roots.
+pub type Units = [Rational; 2];
 
 /// All that is said of two filters.
 #[derive(Debug, Clone)]
 pub struct StabilityAnswer {
+    /// t and R.
+    pub units: Units,
     /// The steady states.
     pub steady: [Steady; 2],
+    /// The matrices.
+    pub loops: ClosedLoops,
     /// The greatest spectral radius of the frozen criterion under the paper's chain.
     pub frozen_radius: f64,
     /// The verdict on the mixed reading.
     pub verdict: StabilityVerdict,
+    /// The joint spectral radius.
+    pub bounds: Bounds,
 }
 
 impl StabilityAnswer {
     /// The answer about two filters.
-    pub fn new(filters: &Filters, verdict: StabilityVerdict) -> Self {
+    pub fn new(filters: &Filters, units: Units, depth: Depth, verdict: StabilityVerdict) -> Self {
+        let loops = filters.closed_loops();
         Self {
-            steady: steady(filters),
+            steady: steady(filters, &units, &loops),
+            units,
             frozen_radius: greatest_frozen_radius(filters),
+            bounds: loops.bounds(depth, &verdict),
+            loops,
             verdict,
+        }
+    }
+
+    fn proof<'a>(&'a self, letters: &'a [String]) -> Proof<'a, nalgebra::U3> {
+        Proof {
+            letters,
+            loops: &self.loops,
+            verdict: &self.verdict,
+            bounds: &self.bounds,
         }
     }
 }
 
+fn letters() -> Vec<String> {
+    LETTERS.iter().map(char::to_string).collect()
+}
+
+/// As many digits as are right, and no more than [`DIGITS`].
+fn digits(value: &Enclosure) -> String {
+    let right = (1..=DIGITS).rev().find_map(|digits| value.to_decimal(digits));
+    right.unwrap_or_else(|| value.to_string())
+}
+
+/// The spectral radius of one filter, by the Schur-Cohn test on either side.
+pub(super) fn between<N: nalgebra::Dim>(loops: &ClosedLoops<N>, filter: usize) -> Between
+where
+    crate::matrix::Shapes: crate::matrix::Holds<N>,
+{
+    let near = Rational::from_f64(spectral_radius(&loops.in_doubles()[filter]));
+    let is_below = |bound: &Rational| loops.is_radius_below(&[filter], bound);
+    // Wider where a double is farther off, or the test cannot tell.
+    for digits in (0..=RADIUS_DIGITS).rev() {
+        let unit = Rational::new(1, 10).pow(digits);
+        let middle = Rational::from_decimal(&near.to_decimal(digits)).unwrap_or_else(|| near.clone());
+        let (low, high) = (middle.clone() - unit.clone(), middle + unit);
+        if is_below(&high) == Some(true) && (!low.is_positive() || is_below(&low) == Some(false)) {
+            let low = if low.is_positive() { low } else { Rational::integer(0) };
+            return Between {
+                at_least: low.to_decimal(digits),
+                below: high.to_decimal(digits),
+            };
+        }
+    }
+    let unknown = || "unknown".to_owned();
+    Between {
+        at_least: unknown(),
+        below: unknown(),
+    }
+}
+
 /// The steady states of both filters, at the precision of certificates.
-fn steady(filters: &Filters) -> [Steady; 2] {
-    let matrices = filters.in_doubles();
-    let text = |value: &Enclosure| value.to_decimal(DIGITS).unwrap_or_else(|| value.to_string());
+fn steady(filters: &Filters, units: &Units, loops: &ClosedLoops) -> [Steady; 2] {
     Enclosure::with_precision(BITS, || {
         let [v, a] = &filters.roots();
-        let one = Enclosure::integer(1);
-        let of = |name, root: &Enclosure, index: &Enclosure, gain: &nalgebra::Vector3<Enclosure>, matrix| Steady {
-            name,
-            tracking_index: text(index),
-            damping_root: text(root),
-            gain: [0, 1, 2].map(|i| text(&gain[i])),
-            innovation_variance: text(&gains::innovation_variance(root, &one)),
-            spectral_radius: spectral_radius(matrix),
+        let (one, two) = (Enclosure::integer(1), Enclosure::integer(2));
+        let [t, r] = units.each_ref().map(Enclosure::rational);
+        let of = |name, root: &Enclosure, index: &Enclosure, gains: [nalgebra::Vector3<Enclosure>; 2], filter| {
+            let [scaled, gain] = gains;
+            Steady {
+                name,
+                tracking_index: digits(index),
+                damping_root: digits(root),
+                alpha: digits(&scaled[0]),
+                beta: digits(&scaled[1]),
+                gamma: digits(&(scaled[2].clone() * two.clone())),
+                gain: [0, 1, 2].map(|i| digits(&gain[i])),
+                innovation_variance: digits(&gains::innovation_variance(root, &r)),
+                scaled_gain: [0, 1, 2].map(|i| digits(&scaled[i])),
+                scaled_innovation_variance: digits(&gains::innovation_variance(root, &one)),
+                spectral_radius: between(loops, filter),
+            }
         };
-        let (gain_v, gain_a) = (gains::alpha_beta_gain(v, &one), gains::alpha_beta_gamma_gain(a, &one));
+        let velocity = [&one, &t].map(|t| gains::alpha_beta_gain(v, t));
+        let acceleration = [&one, &t].map(|t| gains::alpha_beta_gamma_gain(a, t));
         [
-            of(
-                "constant velocity",
-                v,
-                &gains::alpha_beta_index(v),
-                &gain_v,
-                &matrices[0],
-            ),
+            of("constant velocity", v, &gains::alpha_beta_index(v), velocity, 0),
             of(
                 "constant acceleration",
                 a,
                 &gains::alpha_beta_gamma_index(a),
-                &gain_a,
-                &matrices[1],
+                acceleration,
+                1,
             ),
         ]
     })
@@ -101,14 +186,29 @@ pub fn text(about: &str, answer: &StabilityAnswer) -> String {
         let mut row = vec![filter.name.to_owned()];
         let numbers = [&filter.tracking_index, &filter.damping_root]
             .into_iter()
-            .chain(&filter.gain);
-        row.extend(numbers.chain([&filter.innovation_variance]).map(|number| short(number)));
-        row.push(figure(filter.spectral_radius));
+            .chain(&filter.scaled_gain);
+        row.extend(
+            numbers
+                .chain([&filter.scaled_innovation_variance, &filter.spectral_radius.below])
+                .map(|number| short(number)),
+        );
         rows.add_row(row);
     }
     let _ = writeln!(text, "{rows}");
+    let gains = answer.steady.iter().zip(LETTERS).map(|(filter, letter)| {
+        let gain = filter.gain.each_ref().map(|entry| short(entry)).join(", ");
+        format!(
+            "K_{letter} = [{gain}] and S_{letter} = {} m²",
+            short(&filter.innovation_variance)
+        )
+    });
+    let [t, r] = &answer.units;
     text.push_str(&wrapped(
-        "The gain is K = [α, β/t, γ/(2t²)]; all digits are proven by enclosure, and more of them are in --json.",
+        &format!(
+            "With t = {t} s and R = {r} m² the gain K = [α, β/t, γ/(2t²)] and the innovation variance S are {}. Four digits of each are shown; \
+             --json has up to {DIGITS}, all proven.",
+            gains.collect::<Vec<_>>().join("; ")
+        ),
         "",
     ));
     text.push_str("\nUN-MIXED  certified stable\n");
@@ -123,7 +223,9 @@ pub fn text(about: &str, answer: &StabilityAnswer) -> String {
     };
     let _ = writeln!(text, "\nMIXED     {certified}{}", verdict_word(&answer.verdict));
     text.push_str(&wrapped(&proof(&answer.verdict), "  "));
-    text.push_str(&matrices(&answer.verdict));
+    let letters = letters();
+    text.push_str(&answer.proof(&letters).text());
+    text.push_str(&answer.proof(&letters).bounds_text());
     text.push_str("\nFROZEN    not certified, searched\n");
     text.push_str(&wrapped(
         &format!(
@@ -136,7 +238,7 @@ pub fn text(about: &str, answer: &StabilityAnswer) -> String {
     text
 }
 
-/// A proven decimal with six digits for the table.
+/// A proven decimal with four digits for the table.
 fn short(number: &str) -> String {
     let value = Rational::from_decimal(number).map_or(f64::NAN, |number| number.to_f64());
     figure(value)
@@ -163,7 +265,7 @@ fn proof(verdict: &StabilityVerdict) -> String {
             "Mode probabilities exist under which errors grow without bound, although each filter by itself is stable: the product {} \
              (letters in the order in which they act, {} letters) has a spectral radius of at least {} = {}, by the Schur-Cohn test of its \
              characteristic polynomial. Checked.",
-            word(&found.word),
+            word(&found.word, &letters()),
             found.word.len(),
             found.radius,
             figure(found.radius.to_f64()),
@@ -175,57 +277,29 @@ fn proof(verdict: &StabilityVerdict) -> String {
     }
 }
 
-/// A word with its runs as powers.
-fn word(word: &[usize]) -> String {
-    let superscript = |count: usize| {
-        let digit = |c: char| "⁰¹²³⁴⁵⁶⁷⁸⁹".chars().nth(c as usize - '0' as usize).unwrap_or(c);
-        count.to_string().chars().map(digit).collect::<String>()
-    };
-    let runs = word.chunk_by(|a, b| a == b);
-    runs.map(|run| match run {
-        [letter] => LETTERS[*letter].to_string(),
-        _ => format!("{}{}", LETTERS[run[0]], superscript(run.len())),
-    })
-    .collect::<Vec<_>>()
-    .join(" ")
-}
-
-/// The forms, up to four of them.
-fn matrices(verdict: &StabilityVerdict) -> String {
-    let StabilityVerdict::Stable(Quadratics { forms, .. }) = verdict else {
-        return String::new();
-    };
-    let mut text = String::new();
-    for (node, form) in forms.iter().enumerate().take(4) {
-        let name = match forms.len() {
-            1 => "P".to_owned(),
-            count => format!("P({})", memory_text(node, count.ilog2())),
-        };
-        let _ = writeln!(text, "    {name} = {}", rows_text(form));
-    }
-    if forms.len() > 4 {
-        let _ = writeln!(text, "    … {} more: --certificate FILE writes them", forms.len() - 4);
-    }
-    text
-}
-
-fn memory_text(node: usize, length: u32) -> String {
-    (0..length).rev().map(|bit| LETTERS[node >> bit & 1]).collect()
-}
-
 /// The answer for programs.
 pub fn json(about: &str, answer: &StabilityAnswer, certificate: Option<&CertificateFile>) -> Value {
+    let letters = letters();
+    let mut mixed = json!({ "verdict": verdict_word(&answer.verdict), "certificate": certificate });
+    if let (Some(mixed), Value::Object(proof)) = (mixed.as_object_mut(), answer.proof(&letters).json()) {
+        mixed.extend(proof);
+    }
     json!({
         "about": about,
+        "interval": answer.units[0].to_string(),
+        "measurement_variance": answer.units[1].to_string(),
         "steady": answer.steady,
         "unmixed": { "verdict": "stable" },
-        "mixed": { "verdict": verdict_word(&answer.verdict), "certificate": certificate },
+        "mixed": mixed,
         "frozen": { "greatest_spectral_radius": answer.frozen_radius, "certified": false },
     })
 }
 
 /// The verdict in one word.
-pub fn verdict_word(verdict: &StabilityVerdict) -> &'static str {
+pub fn verdict_word<N: nalgebra::Dim>(verdict: &StabilityVerdict<N>) -> &'static str
+where
+    crate::matrix::Shapes: crate::matrix::Holds<N>,
+{
     match verdict {
         StabilityVerdict::Stable(_) => "stable",
         StabilityVerdict::Unstable(_) => "unstable",

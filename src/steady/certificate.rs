@@ -10,9 +10,9 @@
 
 use super::pair::product;
 use super::polynomial::{has_radius_below, rows_of};
-use crate::matrix::{NotPositiveDefinite, check_positive_definite, is_symmetric, ldl};
+use crate::matrix::{Holds, NotPositiveDefinite, Shapes, check_positive_definite, is_symmetric, ldl};
 use crate::number::{Field, Rational};
-use nalgebra::SMatrix;
+use nalgebra::{Dim, OMatrix, U3};
 
 /// An edge of a graph: from a node, by one of the matrices, to a node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -23,6 +23,34 @@ pub struct Edge {
     pub letter: usize,
     /// The node it reaches.
     pub to: usize,
+}
+
+impl Edge {
+    /// The graph with one node for each word of a length and an edge for each letter, to the word without its first letter and with the new
+    /// one: forms that remember the last letters.
+    ///
+    /// Source: de Bruijn 1946; Lee and Dullerud 2006.
+    ///
+    /// Example: two letters, one remembered: a node is the last letter, and every edge leads to the node of its own letter.
+    ///
+    /// ```
+    /// use immaculate::steady::certificate::Edge;
+    ///
+    /// let edges = Edge::memory(2, 1);
+    /// assert_eq!(edges.len(), 4);
+    /// assert!(edges.iter().all(|edge| edge.to == edge.letter));
+    /// ```
+    pub fn memory(letters: usize, length: u32) -> Vec<Self> {
+        let nodes = letters.pow(length);
+        let edges = (0..nodes).flat_map(|from| {
+            (0..letters).map(move |letter| Self {
+                from,
+                letter,
+                to: (from * letters + letter) % nodes,
+            })
+        });
+        edges.collect()
+    }
 }
 
 /// Quadratic forms on the nodes of a graph, each edge of which makes them smaller.
@@ -42,11 +70,11 @@ pub struct Edge {
 ///
 /// ```
 /// use immaculate::number::Rational;
-/// use immaculate::steady::certificate::Quadratics;
+/// use immaculate::steady::certificate::{Edge, Quadratics};
 /// use nalgebra::matrix;
 ///
 /// let q = Rational::new;
-/// let certificate = Quadratics::<1> { edges: Quadratics::<1>::memory(2, 0), forms: vec![matrix![q(1, 1)]] };
+/// let certificate = Quadratics { edges: Edge::memory(2, 0), forms: vec![matrix![q(1, 1)]] };
 /// assert!(certificate.check(&[matrix![q(1, 2)], matrix![q(-3, 4)]]).is_ok());
 /// // 1 − 1 is not above zero.
 /// assert!(certificate.check(&[matrix![q(1, 2)], matrix![q(-1, 1)]]).is_err());
@@ -54,11 +82,14 @@ pub struct Edge {
 ///
 /// Evidence: `the_paper_s_filters_are_certified_stable`, `a_spoilt_certificate_is_refused` (exact).
 #[derive(Debug, Clone, PartialEq)]
-pub struct Quadratics<const N: usize> {
+pub struct Quadratics<N: Dim = U3>
+where
+    Shapes: Holds<N>,
+{
     /// The graph.
     pub edges: Vec<Edge>,
     /// One form a node.
-    pub forms: Vec<SMatrix<Rational, N, N>>,
+    pub forms: Vec<OMatrix<Rational, N, N>>,
 }
 
 /// A word whose product has a spectral radius of at least a bound above one.
@@ -139,39 +170,44 @@ pub enum NotProven {
     },
 }
 
-impl<const N: usize> Quadratics<N> {
-    /// The graph with one node for each word of a length and an edge for each letter, to the word without its first letter and with the new
-    /// one: forms that remember the last letters.
-    ///
-    /// Source: de Bruijn 1946; Lee and Dullerud 2006.
-    ///
-    /// Example: two letters, one remembered: a node is the last letter, and every edge leads to the node of its own letter.
-    ///
-    /// ```
-    /// use immaculate::steady::certificate::Quadratics;
-    ///
-    /// let edges = Quadratics::<1>::memory(2, 1);
-    /// assert_eq!(edges.len(), 4);
-    /// assert!(edges.iter().all(|edge| edge.to == edge.letter));
-    /// ```
-    pub fn memory(letters: usize, length: u32) -> Vec<Edge> {
-        let nodes = letters.pow(length);
-        let edges = (0..nodes).flat_map(|from| {
-            (0..letters).map(move |letter| Edge {
-                from,
-                letter,
-                to: (from * letters + letter) % nodes,
-            })
-        });
-        edges.collect()
-    }
-
+impl<N: Dim> Quadratics<N>
+where
+    Shapes: Holds<N>,
+{
     /// Checks that the forms prove a joint spectral radius of the matrices below one.
     ///
     /// # Errors
     ///
     /// [`NotProven`] with the first condition that does not hold or cannot be decided.
-    pub fn check<T: Field + PartialOrd>(&self, matrices: &[SMatrix<T, N, N>]) -> Result<(), NotProven> {
+    pub fn check<T: Field + PartialOrd>(&self, matrices: &[OMatrix<T, N, N>]) -> Result<(), NotProven> {
+        self.check_rate(matrices, &Rational::integer(1))
+    }
+
+    /// Checks that the forms prove a joint spectral radius of the matrices below a rate λ, that is, λ²Pᵤ − A_σᵀ Pᵥ A_σ ≻ 0: the forms
+    /// shrink by λ² at each step, and errors by λ, but for a constant factor.
+    ///
+    /// Example: 1/2 and −3/4 with P = 1: below 4/5, since 16/25 > 9/16, and not below 7/10.
+    ///
+    /// ```
+    /// use immaculate::number::Rational;
+    /// use immaculate::steady::certificate::{Edge, Quadratics};
+    /// use nalgebra::matrix;
+    ///
+    /// let q = Rational::new;
+    /// let matrices = [matrix![q(1, 2)], matrix![q(-3, 4)]];
+    /// let form = Quadratics { edges: Edge::memory(2, 0), forms: vec![matrix![q(1, 1)]] };
+    /// assert!(form.check_rate(&matrices, &q(4, 5)).is_ok());
+    /// assert!(form.check_rate(&matrices, &q(7, 10)).is_err());
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// As [`Quadratics::check`].
+    pub fn check_rate<T: Field + PartialOrd>(
+        &self,
+        matrices: &[OMatrix<T, N, N>],
+        rate: &Rational,
+    ) -> Result<(), NotProven> {
         self.check_graph(matrices.len())?;
         for (node, form) in self.forms.iter().enumerate() {
             let wrong = |reason: String| NotProven::Form { node, reason };
@@ -180,10 +216,11 @@ impl<const N: usize> Quadratics<N> {
             }
             check_positive_definite(&ldl(form)).map_err(|pivot| wrong(pivot.to_string()))?;
         }
+        let square = T::rational(&(rate * rate.clone()));
         for (number, edge) in self.edges.iter().enumerate() {
             let a = &matrices[edge.letter];
             let [p, p_next] = [edge.from, edge.to].map(|node| self.forms[node].map(|entry| T::rational(&entry)));
-            let decrease = p - a.transpose() * p_next * a;
+            let decrease = p * square.clone() - a.transpose() * p_next * a;
             check_positive_definite(&ldl(&decrease)).map_err(|pivot| NotProven::Decrease { edge: number, pivot })?;
         }
         Ok(())
@@ -214,7 +251,10 @@ impl Product {
     /// # Errors
     ///
     /// [`NotProven`] with the first condition that does not hold or cannot be decided.
-    pub fn check<T: Field + PartialOrd, const N: usize>(&self, matrices: &[SMatrix<T, N, N>]) -> Result<(), NotProven> {
+    pub fn check<T: Field + PartialOrd, N: Dim>(&self, matrices: &[OMatrix<T, N, N>]) -> Result<(), NotProven>
+    where
+        Shapes: Holds<N>,
+    {
         if self.word.is_empty() || self.word.iter().any(|&letter| letter >= matrices.len()) {
             return Err(NotProven::Word);
         }

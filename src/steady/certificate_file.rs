@@ -208,6 +208,21 @@ impl Noises {
 }
 
 impl FiltersFile {
+    /// t, s, and R, m²; one and one for damping roots, which are without units.
+    ///
+    /// # Errors
+    ///
+    /// [`InvalidCertificate::Number`].
+    pub fn units(&self) -> Result<[Rational; 2], InvalidCertificate> {
+        match self {
+            Self::DampingRoots(_) => Ok([Rational::new(1, 1), Rational::new(1, 1)]),
+            Self::Noises(noises) => Ok([
+                read_number("interval", &noises.interval)?,
+                read_number("measurement", &noises.measurement)?,
+            ]),
+        }
+    }
+
     /// The filters.
     ///
     /// # Errors

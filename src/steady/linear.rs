@@ -4,8 +4,9 @@
 //! divides by.
 
 use super::polynomial::MatrixRows;
+use crate::matrix::{Holds, Shapes, rows};
 use crate::number::Field;
-use nalgebra::SMatrix;
+use nalgebra::{Dim, OMatrix};
 
 /// The solution X of A X = B; none if a pivot that is known to differ from zero cannot be found.
 ///
@@ -88,11 +89,15 @@ fn greatest<T: Field + PartialOrd>(matrix: &MatrixRows<T>, column: usize) -> Opt
 /// ```
 ///
 /// Evidence: `the_stein_equation_is_solved_exactly` (exact).
-pub fn stein<T: Field + PartialOrd, const N: usize>(
-    a: &SMatrix<T, N, N>,
-    constant: &SMatrix<T, N, N>,
-) -> Option<SMatrix<T, N, N>> {
-    let place = |index: usize| (index / N, index % N);
+pub fn stein<T: Field + PartialOrd, N: Dim>(
+    a: &OMatrix<T, N, N>,
+    constant: &OMatrix<T, N, N>,
+) -> Option<OMatrix<T, N, N>>
+where
+    Shapes: Holds<N>,
+{
+    let n = a.nrows();
+    let place = |index: usize| (index / n, index % n);
     let row = |index: usize| {
         let (i, j) = place(index);
         let entry = |other: usize| {
@@ -100,10 +105,11 @@ pub fn stein<T: Field + PartialOrd, const N: usize>(
             let own = if index == other { T::one() } else { T::zero() };
             own - a[(i, k)].clone() * a[(j, l)].clone()
         };
-        (0..N * N).map(entry).collect()
+        (0..n * n).map(entry).collect()
     };
-    let matrix: MatrixRows<T> = (0..N * N).map(row).collect();
-    let side = (0..N * N).map(|index| vec![constant[place(index)].clone()]).collect();
+    let matrix: MatrixRows<T> = (0..n * n).map(row).collect();
+    let side = (0..n * n).map(|index| vec![constant[place(index)].clone()]).collect();
     let solved = solve(matrix, side)?;
-    Some(SMatrix::from_fn(|i, j| solved[i * N + j][0].clone()))
+    let entry = |i: usize, j: usize| solved[i * n + j][0].clone();
+    Some(OMatrix::from_fn_generic(rows(a), rows(a), entry))
 }

@@ -13,13 +13,17 @@
 //! - [`unrolled`]: the recursion undone;
 //! - [`pair`]: the two filters of derbez2000 and three criteria of their joint stability;
 //! - [`certificate`]: what proves joint stability, or its absence;
+//! - [`by_hand`]: the same in numbers that can be followed with pencil and paper;
 //! - [`certificate_file`]: the same as files, which anyone can check;
 //! - [`search`]: how such proofs are found;
-//! - [`verdict`]: the answer for two filters;
+//! - [`closed_loops`]: any filters, and how the question is decided;
+//! - [`verdict`]: the two filters of derbez2000;
 //! - [`map`]: the answers over a range of noises.
 
+pub mod by_hand;
 pub mod certificate;
 pub mod certificate_file;
+pub mod closed_loops;
 pub mod gains;
 pub mod linear;
 pub mod long_term;

@@ -25,9 +25,10 @@ use super::gains;
 use super::polynomial::MatrixRows;
 use super::riccati::closed_loop;
 use crate::imm::probability::{mixing_probability, predicted_mode_probability};
+use crate::matrix::{Holds, Shapes, rows};
 use crate::model::acceleration::{constant_acceleration, embedded_constant_velocity, position_matrix};
 use crate::number::Field;
-use nalgebra::{Matrix3, SMatrix};
+use nalgebra::{Dim, Matrix3, OMatrix, SMatrix};
 
 /// (I − K H) F of the constant velocity filter with a damping root, in scaled coordinates — derbez2000 (7).
 ///
@@ -173,8 +174,12 @@ pub(super) fn mixing<T: Field>(chain: &[Vec<T>], probabilities: &[T; 2]) -> (Vec
 /// ```
 ///
 /// Evidence: `a_product_of_two_stable_filters_is_unstable` (exact).
-pub fn product<T: Field, const N: usize>(word: &[usize], matrices: &[SMatrix<T, N, N>]) -> SMatrix<T, N, N> {
-    let mut product = SMatrix::identity();
+pub fn product<T: Field, N: Dim>(word: &[usize], matrices: &[OMatrix<T, N, N>]) -> OMatrix<T, N, N>
+where
+    Shapes: Holds<N>,
+{
+    let side = rows(&matrices[0]);
+    let mut product = OMatrix::identity_generic(side, side);
     for &letter in word {
         product = &matrices[letter] * product;
     }

@@ -5,8 +5,10 @@
 //!
 //! A matrix is a list of rows here, of any size: the frozen criterion joins several filters into one matrix.
 
+use crate::matrix::Shapes;
 use crate::number::Field;
-use nalgebra::SMatrix;
+use nalgebra::allocator::Allocator;
+use nalgebra::{Dim, OMatrix};
 use std::cmp::Ordering;
 
 /// A matrix as a list of rows.
@@ -24,9 +26,12 @@ pub type MatrixRows<T> = Vec<Vec<T>>;
 ///
 /// assert_eq!(rows_of(&matrix![1.0, 2.0; 3.0, 4.0]), [[1.0, 2.0], [3.0, 4.0]]);
 /// ```
-pub fn rows_of<T: Field, const R: usize, const C: usize>(matrix: &SMatrix<T, R, C>) -> MatrixRows<T> {
-    let row = |i: usize| (0..C).map(|j| matrix[(i, j)].clone()).collect();
-    (0..R).map(row).collect()
+pub fn rows_of<T: Field, R: Dim, C: Dim>(matrix: &OMatrix<T, R, C>) -> MatrixRows<T>
+where
+    Shapes: Allocator<R, C>,
+{
+    let row = |i: usize| (0..matrix.ncols()).map(|j| matrix[(i, j)].clone()).collect();
+    (0..matrix.nrows()).map(row).collect()
 }
 
 /// The characteristic polynomial det(λI − A), its coefficients from λ⁰ up to λⁿ.

@@ -18,10 +18,11 @@ use super::polynomial::{is_stable_polynomial, rows_of};
 use super::reach::{polynomial_text, unseen_part};
 use crate::filter::{kalman, update};
 use crate::matrix::{
-    NotPositiveDefinite, check_positive_definite, is_positive_semidefinite, is_symmetric, ldl, mirrored,
+    Holds, NotPositiveDefinite, Shapes, check_positive_definite, is_positive_semidefinite, is_symmetric, ldl, mirrored,
+    rows,
 };
 use crate::number::{Enclosure, Field, Rational};
-use nalgebra::SMatrix;
+use nalgebra::{Dim, OMatrix, SMatrix};
 
 /// What a steady Kalman filter is made of.
 #[derive(Debug, Clone, PartialEq)]
@@ -138,13 +139,16 @@ impl<T: Field, const N: usize, const M: usize> Riccati<T, N, M> {
     }
 }
 
-/// (I − K H) F.
-pub(super) fn closed_loop<T: Field, const N: usize, const M: usize>(
-    gain: &SMatrix<T, N, M>,
-    measurement: &SMatrix<T, M, N>,
-    transition: &SMatrix<T, N, N>,
-) -> SMatrix<T, N, N> {
-    (SMatrix::identity() - gain * measurement) * transition
+/// (I − K H) F: [`Riccati::closed_loop`].
+pub fn closed_loop<T: Field, N: Dim, M: Dim>(
+    gain: &OMatrix<T, N, M>,
+    measurement: &OMatrix<T, M, N>,
+    transition: &OMatrix<T, N, N>,
+) -> OMatrix<T, N, N>
+where
+    Shapes: Holds<N, M>,
+{
+    (OMatrix::identity_generic(rows(gain), rows(gain)) - gain * measurement) * transition
 }
 
 impl<T: Field + PartialOrd, const N: usize, const M: usize> Riccati<T, N, M> {

@@ -5,20 +5,17 @@
 //! library in another language with it; the sets here have a few dozen unknowns.
 
 use super::certificate::{Edge, Product, Quadratics};
-use super::linear::stein;
 use super::pair::product;
+use crate::matrix::{Holds, Shapes, rows};
 use crate::number::{Field, Rational, Real};
-use nalgebra::{DMatrix, DVector, SMatrix};
-
-/// The unknowns of one 3 × 3 form: its lower triangle.
-const UNKNOWNS: usize = 6;
-const TRIANGLE: [(usize, usize); UNKNOWNS] = [(0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2)];
-
-type Matrix = SMatrix<f64, 3, 3>;
+use nalgebra::{DMatrix, DVector, Dim, OMatrix};
 
 /// The spectral radius of a matrix, from the norm of its 2³⁹-th power.
-pub fn spectral_radius<const N: usize>(matrix: &SMatrix<f64, N, N>) -> f64 {
-    let mut power = *matrix;
+pub fn spectral_radius<N: Dim>(matrix: &OMatrix<f64, N, N>) -> f64
+where
+    Shapes: Holds<N>,
+{
+    let mut power = matrix.clone();
     let (mut logarithm, mut weight) = (0.0, 1.0);
     for _ in 0..40 {
         let size = power.amax();
@@ -27,7 +24,7 @@ pub fn spectral_radius<const N: usize>(matrix: &SMatrix<f64, N, N>) -> f64 {
         }
         logarithm += weight * Real::ln(&size);
         power /= size;
-        power *= power;
+        power = &power * &power;
         weight /= 2.0;
     }
     Real::exp(&logarithm)
@@ -35,14 +32,31 @@ pub fn spectral_radius<const N: usize>(matrix: &SMatrix<f64, N, N>) -> f64 {
 
 /// The word of at most a length whose product grows most a letter, and its growth a letter; only words that are no power of a shorter one
 /// and come first among their rotations, which have the same spectral radius.
-pub fn fastest_word<const N: usize>(matrices: &[SMatrix<f64, N, N>], longest: usize) -> (Vec<usize>, f64) {
+pub fn fastest_word<N: Dim>(matrices: &[OMatrix<f64, N, N>], longest: usize) -> (Vec<usize>, f64)
+where
+    Shapes: Holds<N>,
+{
+    fastest_allowed_word(matrices, longest, |_| true)
+}
+
+/// The same among the words that are allowed.
+pub fn fastest_allowed_word<N: Dim>(
+    matrices: &[OMatrix<f64, N, N>],
+    longest: usize,
+    is_allowed: impl Fn(&[usize]) -> bool,
+) -> (Vec<usize>, f64)
+where
+    Shapes: Holds<N>,
+{
     let mut best = (vec![0], 0.0);
     // Duval's order of the Lyndon words.
     let mut word = vec![0];
     while !word.is_empty() {
-        let growth = Real::exp(&(Real::ln(&spectral_radius(&product(&word, matrices))) / word.len() as f64));
-        if growth > best.1 * (1.0 + 1e-12) {
-            best = (word.clone(), growth);
+        if is_allowed(&word) {
+            let growth = Real::exp(&(Real::ln(&spectral_radius(&product(&word, matrices))) / word.len() as f64));
+            if growth > best.1 * (1.0 + 1e-12) {
+                best = (word.clone(), growth);
+            }
         }
         let period = word.len();
         while word.len() < longest {
@@ -60,10 +74,13 @@ pub fn fastest_word<const N: usize>(matrices: &[SMatrix<f64, N, N>], longest: us
 
 /// The word of a run of the first matrix and a run of the second whose product grows most a letter, and its growth a letter: what slow
 /// filters need, whose shortest growing products are long.
-pub fn fastest_runs<const N: usize>(matrices: &[SMatrix<f64, N, N>; 2], longest: usize) -> (Vec<usize>, f64) {
+pub fn fastest_runs<N: Dim>(matrices: [&OMatrix<f64, N, N>; 2], longest: usize) -> (Vec<usize>, f64)
+where
+    Shapes: Holds<N>,
+{
     let powers = matrices.map(|matrix| {
-        let next = |power: &SMatrix<f64, N, N>| Some(power * matrix);
-        std::iter::successors(Some(matrix), next)
+        let next = |power: &OMatrix<f64, N, N>| Some(power * matrix);
+        std::iter::successors(Some(matrix.clone()), next)
             .take(longest)
             .collect::<Vec<_>>()
     });
@@ -83,13 +100,14 @@ pub fn fastest_runs<const N: usize>(matrices: &[SMatrix<f64, N, N>; 2], longest:
     )
 }
 
-/// A certificate of growth with a short bound, from a word and its growth a letter; none if the growth is too near one to be told.
+/// A certificate of growth from a word and its growth a letter; none if the growth is too near one to be told.
+///
+/// The bound has three digits of what the spectral radius is above one, and is below it by one or two units of the last: short, and tight.
 pub fn product_certificate(word: Vec<usize>, growth: f64) -> Option<Product> {
     let length = word.len() as f64;
     let radius = Real::exp(&(Real::ln(&growth) * length));
-    // A bound halfway down to one, with two digits more than it needs.
-    let digits = (1..15).find(|digits| (radius - 1.0) * power_of_ten(*digits) > 20.0)?;
-    let bound = ((1.0 + (radius - 1.0) / 2.0) * power_of_ten(digits)).floor();
+    let digits = (2..15).find(|digits| (radius - 1.0) * power_of_ten(*digits) > 100.0)?;
+    let bound = (radius * power_of_ten(digits) - 1.0).floor();
     let radius = Rational::from_f64(bound) / Rational::integer(10).pow(digits);
     Some(Product { word, radius })
 }
@@ -99,13 +117,16 @@ fn power_of_ten(exponent: u32) -> f64 {
 }
 
 /// Quadratic forms on a graph, rounded to the smallest integers that `check` accepts; none if there seem to be none.
-pub fn quadratics(
-    matrices: &[Matrix],
+pub fn quadratics<N: Dim>(
+    matrices: &[OMatrix<f64, N, N>],
     edges: &[Edge],
-    check: impl Fn(&Quadratics<3>) -> bool,
-) -> Option<Quadratics<3>> {
+    check: impl Fn(&Quadratics<N>) -> bool,
+) -> Option<Quadratics<N>>
+where
+    Shapes: Holds<N>,
+{
     let forms = forms(matrices, edges)?;
-    let greatest = forms.iter().map(Matrix::amax).fold(0.0, f64::max);
+    let greatest = forms.iter().map(|form| form.amax()).fold(0.0, f64::max);
     let scales = (1..16).flat_map(|digits| [1.0, 2.0, 5.0].map(|factor| factor * power_of_ten(digits)));
     scales
         .map(|scale| Quadratics {
@@ -115,115 +136,169 @@ pub fn quadratics(
         .find(check)
 }
 
-fn in_integers(form: &Matrix, scale: f64) -> SMatrix<Rational, 3, 3> {
+fn in_integers<N: Dim>(form: &OMatrix<f64, N, N>, scale: f64) -> OMatrix<Rational, N, N>
+where
+    Shapes: Holds<N>,
+{
     form.map(|entry| Rational::from_f64((entry * scale).round()))
 }
 
 /// Forms that every edge makes smaller by the greatest margin; none if there are none.
-fn forms(matrices: &[Matrix], edges: &[Edge]) -> Option<Vec<Matrix>> {
-    let coordinates = coordinates(matrices)?;
-    let back = coordinates.try_inverse()?;
-    let matrices: Vec<Matrix> = matrices.iter().map(|matrix| coordinates * matrix * back).collect();
+fn forms<N: Dim>(matrices: &[OMatrix<f64, N, N>], edges: &[Edge]) -> Option<Vec<OMatrix<f64, N, N>>>
+where
+    Shapes: Holds<N>,
+{
+    let side = rows(matrices.first()?);
+    let matrices: Vec<DMatrix<f64>> = matrices.iter().map(of_any_side).collect();
+    let coordinates = coordinates(&matrices)?;
+    let back = coordinates.clone().try_inverse()?;
+    let matrices: Vec<DMatrix<f64>> = matrices.iter().map(|matrix| &coordinates * matrix * &back).collect();
     let found = Barrier::new(&matrices, edges).maximise()?;
-    let forms = found.iter().map(|form| coordinates.transpose() * form * coordinates);
-    Some(forms.map(|form| (form + form.transpose()) / 2.0).collect())
+    let forms = found.iter().map(|form| coordinates.transpose() * form * &coordinates);
+    let forms = forms.map(|form| (&form + form.transpose()) / 2.0);
+    Some(
+        forms
+            .map(|form| OMatrix::from_fn_generic(side, side, |i, j| form[(i, j)]))
+            .collect(),
+    )
+}
+
+fn of_any_side<N: Dim>(matrix: &OMatrix<f64, N, N>) -> DMatrix<f64>
+where
+    Shapes: Holds<N>,
+{
+    DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| matrix[(i, j)])
 }
 
 /// Coordinates in which each matrix by itself shrinks vectors, as far as one change of coordinates can have it: the root of the sum of
 /// their Lyapunov matrices.
-fn coordinates(matrices: &[Matrix]) -> Option<Matrix> {
-    let mut sum = Matrix::zeros();
+fn coordinates(matrices: &[DMatrix<f64>]) -> Option<DMatrix<f64>> {
+    let mut sum = DMatrix::zeros(matrices[0].nrows(), matrices[0].nrows());
     for matrix in matrices {
-        sum += stein(&matrix.transpose(), &Matrix::identity())?;
+        sum += lyapunov(matrix)?;
     }
     Some(crate::matrix::cholesky(&sum).ok()?.transpose())
 }
 
-/// A matrix that depends on some of the unknowns, C₀ + Σ xᵢ Cᵢ, and is to stay positive definite.
-struct Constraint {
-    constant: Matrix,
-    terms: Vec<(usize, Matrix)>,
+/// Σ (Aᵏ)ᵀ Aᵏ, twice as many terms each time; none if it has no limit.
+fn lyapunov(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    if spectral_radius(matrix) >= 1.0 {
+        return None;
+    }
+    let (mut power, mut sum) = (matrix.clone(), DMatrix::identity(matrix.nrows(), matrix.nrows()));
+    while power.amax() > 1e-30 {
+        sum += power.transpose() * &sum * &power;
+        power = &power * &power;
+    }
+    sum.iter().all(|entry| entry.is_finite()).then_some(sum)
 }
 
-impl Constraint {
-    fn at(&self, x: &DVector<f64>) -> Matrix {
-        self.terms
-            .iter()
-            .fold(self.constant, |sum, (index, matrix)| sum + matrix * x[*index])
-    }
+/// A part of a constraint, s · Tᵀ Pᵤ T of the form Pᵤ of a node.
+struct Part {
+    node: usize,
+    transformed: DMatrix<f64>,
+    sign: f64,
+}
+
+/// A matrix that depends on some of the forms, C₀ + Σ s Tᵀ Pᵤ T − w t I, and is to stay positive definite.
+struct Constraint {
+    constant: f64,
+    parts: Vec<Part>,
+    /// Whether the margin t is taken away.
+    has_margin: bool,
 }
 
 /// The convex set: forms between 0 and I, and a margin t by which every edge makes them smaller.
+///
+/// The unknowns are the lower triangles of the forms, one after the other, and t.
 struct Barrier {
+    side: usize,
     nodes: usize,
     constraints: Vec<Constraint>,
     start: DVector<f64>,
 }
 
+/// The places of the lower triangle.
+fn triangle(side: usize) -> impl Iterator<Item = (usize, usize)> {
+    (0..side).flat_map(|i| (0..=i).map(move |j| (i, j)))
+}
+
 impl Barrier {
-    fn new(matrices: &[Matrix], edges: &[Edge]) -> Self {
+    fn new(matrices: &[DMatrix<f64>], edges: &[Edge]) -> Self {
+        let side = matrices[0].nrows();
+        let identity = || DMatrix::identity(side, side);
         let nodes = edges.iter().map(|edge| edge.from + 1).max().unwrap_or(0);
-        let margin = nodes * UNKNOWNS;
-        let form = |node: usize, of: &dyn Fn(Matrix) -> Matrix| {
-            let term = |(k, (i, j)): (usize, (usize, usize))| {
-                let mut basis = Matrix::zeros();
-                basis[(i, j)] = 1.0;
-                basis[(j, i)] = 1.0;
-                (node * UNKNOWNS + k, of(basis))
-            };
-            TRIANGLE.into_iter().enumerate().map(term).collect::<Vec<_>>()
+        let unknowns = side * (side + 1) / 2;
+        let margin = nodes * unknowns;
+        let mut start = DVector::zeros(margin + 1);
+        let part = |node: usize, transformed: DMatrix<f64>, sign: f64| Part {
+            node,
+            transformed,
+            sign,
         };
         let mut constraints = Vec::new();
         for node in 0..nodes {
-            let zero = Matrix::zeros();
-            constraints.push(Constraint {
-                constant: zero,
-                terms: form(node, &|basis| basis),
-            });
-            constraints.push(Constraint {
-                constant: Matrix::identity(),
-                terms: form(node, &|basis| -basis),
-            });
+            for (constant, sign) in [(0.0, 1.0), (1.0, -1.0)] {
+                constraints.push(Constraint {
+                    constant,
+                    parts: vec![part(node, identity(), sign)],
+                    has_margin: false,
+                });
+            }
+            for (k, _) in triangle(side).enumerate().filter(|(_, (i, j))| i == j) {
+                start[node * unknowns + k] = 0.5;
+            }
         }
-        let mut start = DVector::zeros(margin + 1);
         for edge in edges {
             let a = &matrices[edge.letter];
-            let mut terms = form(edge.from, &|basis| basis);
-            for (index, matrix) in form(edge.to, &|basis| -a.transpose() * basis * a) {
-                match terms.iter_mut().find(|(own, _)| *own == index) {
-                    Some((_, own)) => *own += matrix,
-                    None => terms.push((index, matrix)),
-                }
-            }
-            terms.push((margin, -Matrix::identity()));
             constraints.push(Constraint {
-                constant: Matrix::zeros(),
-                terms,
+                constant: 0.0,
+                parts: vec![part(edge.from, identity(), 1.0), part(edge.to, a.clone(), -1.0)],
+                has_margin: true,
             });
             // ½ I is inside with this margin.
             start[margin] = f64::min(start[margin], -1.0 - a.norm_squared());
         }
-        for node in 0..nodes {
-            for k in [0, 2, 5] {
-                start[node * UNKNOWNS + k] = 0.5;
-            }
-        }
         Self {
+            side,
             nodes,
             constraints,
             start,
         }
     }
 
+    /// The unknowns of one form.
+    fn unknowns(&self) -> usize {
+        self.side * (self.side + 1) / 2
+    }
+
+    fn form(&self, x: &DVector<f64>, node: usize) -> DMatrix<f64> {
+        let mut form = DMatrix::zeros(self.side, self.side);
+        for (k, (i, j)) in triangle(self.side).enumerate() {
+            form[(i, j)] = x[node * self.unknowns() + k];
+            form[(j, i)] = form[(i, j)];
+        }
+        form
+    }
+
+    /// What a constraint keeps positive definite.
+    fn at(&self, constraint: &Constraint, x: &DVector<f64>) -> DMatrix<f64> {
+        let margin = if constraint.has_margin { x[x.len() - 1] } else { 0.0 };
+        let start = DMatrix::from_diagonal_element(self.side, self.side, constraint.constant - margin);
+        constraint.parts.iter().fold(start, |sum, part| {
+            sum + part.transformed.transpose() * self.form(x, part.node) * &part.transformed * part.sign
+        })
+    }
+
     /// Follows the central path until the margin is positive and half of what it can be, or known to stay negative.
-    fn maximise(&self) -> Option<Vec<Matrix>> {
+    fn maximise(&self) -> Option<Vec<DMatrix<f64>>> {
         let (mut x, margin) = (self.start.clone(), self.start.len() - 1);
-        let gap = 3.0 * self.constraints.len() as f64;
+        let gap = (self.side * self.constraints.len()) as f64;
         let mut weight = 1.0;
         while weight < 1e13 {
             x = self.centre(x, weight)?;
             if x[margin] > gap / weight {
-                return Some((0..self.nodes).map(|node| form_of(&x, node)).collect());
+                return Some((0..self.nodes).map(|node| self.form(&x, node)).collect());
             }
             if x[margin] + gap / weight < 0.0 {
                 return None;
@@ -260,35 +335,55 @@ impl Barrier {
     fn value(&self, x: &DVector<f64>, weight: f64) -> Option<f64> {
         let mut value = -weight * x[x.len() - 1];
         for constraint in &self.constraints {
-            let root = constraint.at(x).cholesky()?;
+            let root = self.at(constraint, x).cholesky()?;
             value -= 2.0 * root.l_dirty().diagonal().iter().map(Real::ln).sum::<f64>();
         }
         Some(value)
     }
 
+    /// Gradient and Hessian.
+    ///
+    /// With W the inverse of a constraint's matrix, G = T W T′ᵀ for two of its parts and E = eᵢeⱼᵀ + eⱼeᵢᵀ for an unknown, the derivatives
+    /// of −ln det are −s tr(E G) and s s′ tr(E G E′ Gᵀ): a few entries of G each.
     fn derivatives(&self, x: &DVector<f64>, weight: f64) -> Option<(DVector<f64>, DMatrix<f64>)> {
+        let (unknowns, margin) = (self.unknowns(), x.len() - 1);
+        let places: Vec<(usize, usize)> = triangle(self.side).collect();
+        // An entry of the diagonal stands in a form once, another twice.
+        let share = |(i, j): (usize, usize)| if i == j { 0.5 } else { 1.0 };
         let mut gradient = DVector::zeros(x.len());
-        gradient[x.len() - 1] = -weight;
+        gradient[margin] = -weight;
         let mut hessian = DMatrix::zeros(x.len(), x.len());
         for constraint in &self.constraints {
-            let inverse = constraint.at(x).try_inverse()?;
-            let parts: Vec<(usize, Matrix)> = constraint.terms.iter().map(|(i, c)| (*i, inverse * c)).collect();
-            for (i, left) in &parts {
-                gradient[*i] -= left.trace();
-                for (j, right) in &parts {
-                    hessian[(*i, *j)] += left.component_mul(&right.transpose()).sum();
+            let inverse = self.at(constraint, x).try_inverse()?;
+            if constraint.has_margin {
+                gradient[margin] += inverse.trace();
+                hessian[(margin, margin)] += inverse.norm_squared();
+            }
+            for first in &constraint.parts {
+                let left = &first.transformed * &inverse;
+                let (own, square) = (&left * first.transformed.transpose(), &left * left.transpose());
+                for (k, &(i, j)) in places.iter().enumerate() {
+                    let at = first.node * unknowns + k;
+                    let factor = 2.0 * share((i, j)) * first.sign;
+                    gradient[at] -= factor * own[(i, j)];
+                    if constraint.has_margin {
+                        hessian[(at, margin)] -= factor * square[(i, j)];
+                        hessian[(margin, at)] -= factor * square[(i, j)];
+                    }
+                }
+                for second in &constraint.parts {
+                    let g = &left * second.transformed.transpose();
+                    let sign = 2.0 * first.sign * second.sign;
+                    for (k, &(i, j)) in places.iter().enumerate() {
+                        let row = first.node * unknowns + k;
+                        for (l, &(a, b)) in places.iter().enumerate() {
+                            let both = g[(i, a)] * g[(j, b)] + g[(i, b)] * g[(j, a)];
+                            hessian[(row, second.node * unknowns + l)] += sign * share((i, j)) * share((a, b)) * both;
+                        }
+                    }
                 }
             }
         }
         Some((gradient, hessian))
     }
-}
-
-fn form_of(x: &DVector<f64>, node: usize) -> Matrix {
-    let mut form = Matrix::zeros();
-    for (k, (i, j)) in TRIANGLE.into_iter().enumerate() {
-        form[(i, j)] = x[node * UNKNOWNS + k];
-        form[(j, i)] = x[node * UNKNOWNS + k];
-    }
-    form
 }

@@ -1,11 +1,12 @@
 //! Whether two fixed-gain filters that exchange estimates are stable: proven, refuted, or undecided.
 //!
-//! After this file the reader knows how the question is answered at one pair of filters, from cheap to dear: short products that grow, a
-//! common quadratic form, forms that remember the last letters, longer products. Each answer is a certificate that was checked.
+//! After this file the reader knows how a pair of filters is named, by damping roots or by noises, and what becomes of it: two matrices,
+//! of which [`super::closed_loops`] decides.
 
 use super::certificate::{NotProven, Product, Quadratics};
+pub use super::closed_loops::{BITS, Depth, StabilityVerdict};
+use super::closed_loops::{ClosedLoops, Entries};
 use super::pair::{acceleration_matrix, velocity_matrix};
-use super::search;
 use crate::number::{Enclosure, Field, Rational};
 use nalgebra::{Matrix3, SMatrix};
 
@@ -21,47 +22,9 @@ pub enum Filters {
     SquaredIndices([Rational; 2]),
 }
 
-/// The precision at which the roots of tracking indices are enclosed: certificates have margins of far more than 2⁻¹⁰⁰.
-pub const BITS: u32 = 192;
-
 /// The longest root of which products are exact, bits of numerator and denominator: a product of letters has three times as many for each,
 /// and takes a time that grows with the cube of their number.
 const SHORT_ROOT: u64 = 32;
-
-/// What is known of the joint stability of two filters.
-#[derive(Debug, Clone, PartialEq)]
-pub enum StabilityVerdict {
-    /// Stable however the filters are mixed.
-    Stable(Quadratics<3>),
-    /// A sequence of mixing probabilities exists under which errors grow without bound.
-    Unstable(Product),
-    /// Neither was found.
-    Undecided {
-        /// The greatest growth a step of any product that was tried.
-        growth: f64,
-    },
-}
-
-/// How far the search goes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Depth {
-    /// The longest product of any letters.
-    pub word: usize,
-    /// The longest run in a product of two runs.
-    pub run: usize,
-    /// The longest memory of the forms, in letters.
-    pub memory: u32,
-}
-
-impl Default for Depth {
-    fn default() -> Self {
-        Self {
-            word: 16,
-            run: 64,
-            memory: 4,
-        }
-    }
-}
 
 /// A form by rows, for people.
 pub fn rows_text(form: &SMatrix<Rational, 3, 3>) -> String {
@@ -80,20 +43,28 @@ impl Filters {
         Self::SquaredIndices(noises.map(|q| q / measurement.clone() * interval.pow(4)))
     }
 
+    /// The matrices of the two filters: exact for roots of few digits, enclosed for others.
+    pub fn closed_loops(&self) -> ClosedLoops {
+        ClosedLoops::new(match self {
+            Self::Roots([v, a]) if self.has_short_roots() => {
+                Entries::Exact(vec![velocity_matrix(v), acceleration_matrix(a)])
+            }
+            _ => Entries::Enclosed(Enclosure::with_precision(BITS, || {
+                let [v, a] = self.roots();
+                vec![velocity_matrix(&v), acceleration_matrix(&a)]
+            })),
+        })
+    }
+
     /// The matrices of the two filters as doubles, for searches.
     pub fn in_doubles(&self) -> [Matrix3<f64>; 2] {
         match self {
             Self::Roots([v, a]) => [velocity_matrix(&v.to_f64()), acceleration_matrix(&a.to_f64())],
             Self::SquaredIndices(_) => {
-                Enclosure::with_precision(BITS, || self.enclosed().map(|a| a.map(|entry| entry.middle())))
+                let matrices = self.closed_loops().in_doubles();
+                [matrices[0], matrices[1]]
             }
         }
-    }
-
-    /// The matrices as enclosures, at the precision of the scope.
-    fn enclosed(&self) -> [Matrix3<Enclosure>; 2] {
-        let [v, a] = self.roots();
-        [velocity_matrix(&v), acceleration_matrix(&a)]
     }
 
     /// The damping roots as enclosures, at the precision of the scope.
@@ -119,30 +90,22 @@ impl Filters {
         }
     }
 
-    /// Checks that quadratic forms prove these filters stable: exactly for roots of few digits, on enclosures for others.
+    /// Checks that quadratic forms prove these filters stable.
     ///
     /// # Errors
     ///
     /// [`NotProven`], as [`Quadratics::check`].
-    pub fn check_stable(&self, forms: &Quadratics<3>) -> Result<(), NotProven> {
-        match self {
-            Self::Roots([v, a]) if self.has_short_roots() => forms.check(&[velocity_matrix(v), acceleration_matrix(a)]),
-            _ => Enclosure::with_precision(BITS, || forms.check(&self.enclosed())),
-        }
+    pub fn check_stable(&self, forms: &Quadratics) -> Result<(), NotProven> {
+        self.closed_loops().check_rate(forms, &Rational::integer(1))
     }
 
-    /// Checks that a product proves these filters unstable: exactly for roots of few digits, on enclosures for others.
+    /// Checks that a product proves these filters unstable.
     ///
     /// # Errors
     ///
     /// [`NotProven`], as [`Product::check`].
     pub fn check_unstable(&self, product: &Product) -> Result<(), NotProven> {
-        match self {
-            Self::Roots([v, a]) if self.has_short_roots() => {
-                product.check(&[velocity_matrix(v), acceleration_matrix(a)])
-            }
-            _ => Enclosure::with_precision(BITS, || product.check(&self.enclosed())),
-        }
+        self.closed_loops().check_unstable(product)
     }
 
     /// Decides whether the filters are stable together.
@@ -158,33 +121,6 @@ impl Filters {
     /// assert_eq!(word_text(&product.word), "vva");
     /// ```
     pub fn decide(&self, depth: Depth) -> StabilityVerdict {
-        let matrices = self.in_doubles();
-        let (word, growth) = search::fastest_word(&matrices, depth.word.min(SHORT));
-        if let Some(product) = self.grows(word, growth) {
-            return StabilityVerdict::Unstable(product);
-        }
-        for memory in 0..=depth.memory {
-            let edges = Quadratics::<3>::memory(LETTERS.len(), memory);
-            let accepts = |forms: &Quadratics<3>| self.check_stable(forms).is_ok();
-            if let Some(forms) = search::quadratics(&matrices, &edges, accepts) {
-                return StabilityVerdict::Stable(forms);
-            }
-        }
-        let words = [
-            search::fastest_runs(&matrices, depth.run),
-            search::fastest_word(&matrices, depth.word),
-        ];
-        let growth = f64::max(words[0].1, words[1].1);
-        let grows = words.into_iter().find_map(|(word, growth)| self.grows(word, growth));
-        grows.map_or(StabilityVerdict::Undecided { growth }, StabilityVerdict::Unstable)
-    }
-
-    /// A checked certificate of growth for a word.
-    fn grows(&self, word: Vec<usize>, growth: f64) -> Option<Product> {
-        let product = search::product_certificate(word, growth)?;
-        self.check_unstable(&product).is_ok().then_some(product)
+        self.closed_loops().decide(depth)
     }
 }
-
-/// Products up to this length are tried before forms.
-const SHORT: usize = 8;
