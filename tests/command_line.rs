@@ -121,6 +121,38 @@ fn stability_proves_and_refutes() {
 }
 
 #[test]
+fn stability_is_asked_of_the_filters_of_a_problem_file() {
+    let case = |id: &str| format!("{}/fixtures/cases/{id}.problem.json", env!("CARGO_MANIFEST_DIR"));
+    let mixed = json(&["stability", "--problem", &case("derbez2000.fixed-gain.mixed"), "--json"]);
+    assert_eq!(
+        (&mixed["mixing"], &mixed["verdict"]),
+        (&Value::from("mixed"), &Value::from("stable"))
+    );
+    let text = succeeds(&["stability", "--problem", &case("derbez2000.fixed-gain.mixed")]);
+    for part in [
+        "MIXED     certified stable",
+        "A_0 = [",
+        "P − A_1ᵀPA_1",
+        "joint spectral radius",
+    ] {
+        assert!(text.contains(part), "{part} in\n{text}");
+    }
+    let unmixed = succeeds(&["stability", "--problem", &case("derbez2000.fixed-gain.unmixed")]);
+    assert!(unmixed.contains("UN-MIXED  certified stable"), "{unmixed}");
+    for (id, reason) in [
+        (
+            "derbez2000.kalman.run",
+            "`filter` is kalman: the question is about filters with fixed gains",
+        ),
+        ("changing.fixed-gain", "of `measurements` has a motion"),
+    ] {
+        let complaint = refuses(&["stability", "--problem", &case(id)], 2);
+        assert!(complaint.contains(reason), "{complaint}");
+    }
+    refuses(&["stability", "--problem", "nowhere.json", "--map"], 2);
+}
+
+#[test]
 fn the_stability_map_is_text_data_and_picture() {
     let folder = temporary("map");
     let text = succeeds(&[

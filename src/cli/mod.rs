@@ -18,6 +18,7 @@ pub mod rule;
 pub mod search;
 pub mod select;
 pub mod stability;
+mod stability_bank;
 pub mod sweep;
 pub mod trace;
 pub mod variants;

@@ -36,6 +36,12 @@ pub struct StabilityArguments {
         conflicts_with_all = ["interval", "measurement_noise", "velocity_noise", "acceleration_noise"]
     )]
     roots: Option<Vec<String>>,
+    /// In place of noises: the fixed-gain filters of a problem file, any number of modes and components (`-` for standard input)
+    #[arg(
+        long, value_name = "FILE",
+        conflicts_with_all = ["roots", "interval", "measurement_noise", "velocity_noise", "acceleration_noise", "certificate", "check", "map"]
+    )]
+    problem: Option<PathBuf>,
     /// Write the certificate to this file
     #[arg(long, value_name = "FILE")]
     certificate: Option<PathBuf>,
@@ -74,6 +80,9 @@ pub fn run(arguments: &StabilityArguments) -> Result<Done, Refusal> {
     }
     if arguments.map {
         return map(arguments);
+    }
+    if let Some(path) = &arguments.problem {
+        return super::stability_bank::run(path, depth(arguments), arguments.json);
     }
     let (filters_file, about) = described(arguments);
     let filters = filters_file.filters().map_err(Refusal::request)?;

@@ -7,7 +7,7 @@
 //! - [`reproduction`], [`published`], [`figure`], [`path`], [`long_term`], [`fit_error`], [`divergence`]: the papers' tables and figures,
 //!   published and computed;
 //! - [`conversion`]: where a converted measurement can be trusted;
-//! - [`stability`], [`stability_map`]: two fixed-gain filters, and all pairs of them;
+//! - [`stability`], [`stability_bank`], [`stability_map`]: two fixed-gain filters, those of a problem file, and all pairs;
 //! - [`check`], [`check_json`], [`verdict`]: the verdict on a program under test; [`search`]: what a search has found;
 //! - [`chart`], [`palette`]: what all figures have in common;
 //! - [`page`]: all of the papers' results in one file.
@@ -36,6 +36,7 @@ pub mod reproduction;
 pub mod rule;
 pub mod search;
 pub mod stability;
+pub mod stability_bank;
 pub mod stability_map;
 mod stability_proof;
 pub mod trace;
