@@ -101,8 +101,8 @@ const SHORT: usize = 8;
 /// The bounds have four digits after the point.
 const SCALE: f64 = 1e4;
 
-/// The time of a search in multiplications: some seconds.
-const MOST_MULTIPLICATIONS: f64 = 4e9;
+/// The time of a search for words in multiplications: about a second.
+const MOST_MULTIPLICATIONS: f64 = 5e8;
 
 /// The most unknowns of a search for forms.
 const MOST_UNKNOWNS: usize = 600;
