@@ -315,6 +315,20 @@ fn reproduce_sets_published_and_computed_figures_side_by_side() {
     ] {
         assert!(text.contains(part), "{part} in\n{text}");
     }
+    // The first line says what is to be seen; what is beside it is asked for.
+    let first = text.split('.').next().unwrap();
+    assert!(
+        first.contains("published figures") && first.contains("standard errors from the computed ones"),
+        "{first}"
+    );
+    assert!(
+        text.contains("of 20 published figures are more than 4 standard errors from the computed ones."),
+        "{text}"
+    );
+    let whole = succeeds(&["reproduce", "--runs", "5", "--brief", "--full"]);
+    for part in ["Consistency and cost", "Delay until", "Converted measurements"] {
+        assert!(!text.contains(part) && whole.contains(part), "{part}");
+    }
     let all = json(&["reproduce", "--runs", "5", "--json"]);
     let [manoeuvres, acceleration, coastal @ .., zhu, liu] = &list(&all["papers"])[..] else {
         panic!("four papers, one of them with two scenarios and one with four");
@@ -459,7 +473,16 @@ fn out_writes_both_scenarios_of_a_paper_with_two_and_the_run_that_it_shows() {
 fn out_writes_the_published_figures_of_all_scenarios_and_the_conversions() {
     let directory = temporary("out of four scenarios");
     let place = directory.to_str().unwrap();
-    let text = succeeds(&["reproduce", "sustika2015", "--runs", "2", "--brief", "--out", place]);
+    let text = succeeds(&[
+        "reproduce",
+        "sustika2015",
+        "--runs",
+        "2",
+        "--brief",
+        "--full",
+        "--out",
+        place,
+    ]);
     assert!(
         text.contains("Converted measurements: up to which"),
         "the table of conversions in\n{text}"

@@ -494,15 +494,15 @@ fn reproductions_of_each_paper() {
         let mut of_paper = reproduction(paper, Choices::default());
         // The first filter has five failures, of which three are named; of three all are.
         of_paper.filters[1].failures = failures(3);
-        text.push_str(&report::reproduction::text(paper, &of_paper));
+        text.push_str(&report::reproduction::text(paper, &of_paper, true));
         let mut other = reproduction(paper, Choices::of("some-parameter", "otherwise"));
         other.filters[0].failures = failures(2);
-        text.push_str(&report::reproduction::alternatives(paper, &[of_paper, other]));
+        text.push_str(&report::reproduction::alternatives(paper, &[of_paper, other], true));
         text.push('\n');
     }
     // A scenario of which nothing is published.
     let acceleration = reproduction(Paper::Derbez2000, Choices::of("scenario", "acceleration"));
-    text.push_str(&report::reproduction::text(Paper::Derbez2000, &acceleration));
+    text.push_str(&report::reproduction::text(Paper::Derbez2000, &acceleration, false));
     insta::assert_snapshot!("reproductions", text);
 }
 
@@ -721,6 +721,7 @@ fn performance(paper: Paper, name: &str, number: usize) -> Performance {
             },
         ],
         microseconds_per_step: 1.25 * (number + 1) as f64,
+        microseconds_standard_error: 0.01,
     }
 }
 

@@ -27,6 +27,10 @@ pub struct ReproduceArguments {
     /// Choose an alternative for an open parameter and run that alone; may be given again (`immaculate choices` lists them)
     #[arg(long = "set", value_name = "PARAMETER=ALTERNATIVE")]
     choices: Vec<String>,
+    /// Print all: delays, consistency, cost, choices that change no figure, and where converted measurements can be trusted; --json and
+    /// --out have it, too
+    #[arg(long)]
+    full: bool,
     /// Leave out the runs of every open choice by itself
     #[arg(long)]
     brief: bool,
@@ -80,13 +84,17 @@ pub fn run(arguments: &ReproduceArguments) -> Result<Done, Refusal> {
         answer["divergence"] = json!({ "runs": runs_for_cause, "simulations": rows });
         text.push_str(&report::divergence::text(&rows, runs_for_cause));
         text.push('\n');
-        text.push_str(&conversions(arguments.out.as_deref())?);
-        text.push('\n');
+        let conversions = conversions(arguments.out.as_deref())?;
+        if arguments.full {
+            text.push_str(&conversions);
+            text.push('\n');
+        }
     }
     bar.finish_and_clear();
     if arguments.json {
         return Ok(json_text(&answer).into());
     }
+    let mut text = report::outcome::opening(&published) + &text;
     text.push_str("What these figures say of the papers' claims: immaculate claims\n");
     Ok(text.into())
 }
@@ -144,10 +152,14 @@ fn one_simulation(
     if let Some(directory) = &arguments.out {
         write_files(directory, main, &value)?;
     }
-    let mut text = report::reproduction::text(paper, main);
+    let mut text = report::reproduction::text(paper, main, arguments.full);
     if !alternatives.is_empty() {
         text.push('\n');
-        text.push_str(&report::reproduction::alternatives(paper, &reproductions));
+        text.push_str(&report::reproduction::alternatives(
+            paper,
+            &reproductions,
+            arguments.full,
+        ));
     }
     text.push('\n');
     Ok((text, value, comparisons))

@@ -10,11 +10,11 @@ use super::chart::{
 use super::palette::INK;
 use super::{standard_errors, table};
 use crate::number::Real;
-use crate::paper::result::Reproduction;
+use crate::paper::result::{Performance, Reproduction};
 use crate::paper::specification::Specification;
 use crate::paper::sustika2015::sweep::{FILTERS, Fit, SweepPoint, SweepSetting, SweptParameter, SweptTrajectory};
 use crate::paper::sustika2015::{DIVERGENT_FIT_ERROR, GOOD_FIT_ERROR};
-use crate::statistics::Estimate;
+use crate::statistics::{Estimate, estimate};
 use std::fmt::Write;
 
 const PANEL_HEIGHT: u32 = 330;
@@ -40,22 +40,24 @@ pub fn text(sweep: &[(SweepSetting, SweepPoint)], runs: usize) -> String {
     text
 }
 
-/// The paper's execution times beside the computed ones, of which only the ratio can be compared; none for a paper without such a table.
+/// The ratio of the paper's execution times beside that of the computed ones with its scatter, which reproduces no table: the programs and
+/// computers are others. None for a paper without such a table.
 pub fn execution_times(specification: &Specification, reproduction: &Reproduction) -> Option<String> {
     let table = specification.tables.iter().find(|table| table.number == 6)?;
     let row = table.rows.iter().find(|row| row.unit == "s")?;
     let (&[first, second], [converted, unscented]) = (&row.values[..], &reproduction.filters[..]) else {
         return None;
     };
-    let here = [converted, unscented].map(|filter| filter.microseconds_per_step);
+    let ratio = unscented.microseconds_per_step / converted.microseconds_per_step;
+    // The parts of both times by which they scatter, as if independent.
+    let share = |filter: &Performance| filter.microseconds_standard_error / filter.microseconds_per_step;
+    let scatter = ratio * (share(converted) * share(converted) + share(unscented) * share(unscented)).sqrt();
     Some(format!(
-        "\nTable 6. {} Published: {first} s and {second} s, the second {:.2} times the first.\n\
-         Here: {:.1} and {:.1} µs a step, {:.2} times.\n",
-        table.caption,
+        "\nExecution times of other programs on another computer cannot be reproduced. The ratio in table 6 is {:.2}; here it is\n\
+         {} ± {}.\n",
         second / first,
-        here[0],
-        here[1],
-        here[1] / here[0],
+        estimate::figure(ratio),
+        estimate::figure(scatter),
     ))
 }
 

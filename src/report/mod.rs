@@ -6,6 +6,7 @@
 //! - [`rule`]: points and weights; [`trace`]: a run step by step; [`cases`], [`variants`], [`claims`]: the lists of what there is;
 //! - [`reproduction`], [`published`], [`figure`], [`path`], [`long_term`], [`fit_error`], [`divergence`]: the papers' tables and figures,
 //!   published and computed;
+//! - [`outcome`]: what became of published figures, in a sentence;
 //! - [`conversion`]: where a converted measurement can be trusted;
 //! - [`stability`], [`stability_bank`], [`stability_map`]: two fixed-gain filters, those of a problem file, and all pairs;
 //! - [`check`], [`check_json`], [`verdict`]: the verdict on a program under test; [`search`]: what a search has found;
@@ -28,6 +29,7 @@ mod formula;
 pub mod literal;
 pub mod long_term;
 mod observation;
+pub mod outcome;
 pub mod page;
 pub mod palette;
 pub mod path;

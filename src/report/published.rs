@@ -4,6 +4,7 @@
 //! a dot with a bar of two standard errors to either side, the published one a diamond.
 
 use super::chart::{Area, Axis, Caption, Drawn, Key, NotDrawn, draw_path, figure, label, marker, panel, range_of};
+use super::outcome::outcome;
 use super::palette::{FILTERS, MEASURED};
 use super::reproduction::SideBySide;
 use crate::paper::Paper;
@@ -15,8 +16,6 @@ const LINE: u32 = 30;
 const AROUND: u32 = 96;
 /// The room for the filters' names, pixels.
 const NAMES: u32 = 170;
-/// What a reader takes for granted as chance: the published figure has a standard error of its own, about as large.
-const CHANCE: f64 = 4.0;
 const COMPUTED: RGBColor = FILTERS[0];
 const PUBLISHED: RGBColor = FILTERS[1];
 /// The shape of the mark of a published figure: a diamond.
@@ -35,14 +34,7 @@ pub fn published_and_computed(paper: Paper, comparisons: &[SideBySide]) -> Optio
     let rows: Vec<&[SideBySide]> = comparisons
         .chunk_by(|a, b| (a.table, &a.row) == (b.table, &b.row))
         .collect();
-    let far = comparisons
-        .iter()
-        .filter(|of| of.difference_in_standard_errors.abs() > CHANCE)
-        .count();
-    let verdict = format!(
-        "{far} of {} published figures are more than {CHANCE} standard errors from the computed ones.",
-        comparisons.len()
-    );
+    let verdict = outcome(comparisons);
     let caption = Caption {
         name: format!("{}-published", paper.key()),
         title: format!("{}: published and computed", paper.key()),

@@ -3,6 +3,7 @@
 //! After this file the reader knows what each column of a reproduced table is, and which published figure stands beside which
 //! computed one.
 
+use super::outcome::outcome;
 use super::{citation, fit_error, indent_of, standard_errors, table, wrapped};
 use crate::paper::Paper;
 use crate::paper::comparison::ErrorQuantity;
@@ -104,8 +105,9 @@ pub fn errors_of<'a>(reproduction: &'a Reproduction) -> Errors<'a> {
     }
 }
 
-/// The whole answer of `reproduce` for one paper, as text.
-pub fn text(paper: Paper, reproduction: &Reproduction) -> String {
+/// The answer of `reproduce` for one simulation, as text: published beside computed, and the paired differences. In full also delays,
+/// consistency and cost.
+pub fn text(paper: Paper, reproduction: &Reproduction, is_full: bool) -> String {
     let specification = paper.specification();
     let mut text = head(specification, reproduction);
     for table in &specification.tables {
@@ -113,7 +115,10 @@ pub fn text(paper: Paper, reproduction: &Reproduction) -> String {
         if !comparisons.is_empty() {
             let _ = writeln!(text, "\nTable {}. {}", table.number, table.caption);
             let _ = writeln!(text, "{}", errors(&comparisons));
-            text.push_str(DIFFERENCE_NOTE);
+            let _ = writeln!(text, "{}", outcome(&comparisons));
+            if is_full {
+                text.push_str(DIFFERENCE_NOTE);
+            }
         }
     }
     text.push_str(&fit_error::execution_times(specification, reproduction).unwrap_or_default());
@@ -134,6 +139,9 @@ pub fn text(paper: Paper, reproduction: &Reproduction) -> String {
             figure(standard_error),
             standard_errors(difference.estimate.distance_from(0.0))
         );
+    }
+    if !is_full {
+        return text + &failures(reproduction);
     }
     if reproduction.filters.iter().any(|filter| !filter.delays.is_empty()) {
         let _ = writeln!(text, "\nDelay until the true mode is more likely than not");
@@ -375,16 +383,29 @@ fn error_of(reproduction: &Reproduction, name: &str, of: Figure) -> String {
     }
 }
 
-/// The same as text, one line an alternative.
-pub fn alternatives(paper: Paper, reproductions: &[Reproduction]) -> String {
-    let alternatives = under_each_choice(paper, reproductions);
+/// The same as text, one line an alternative; unless in full, only those under which a figure is another than at the defaults.
+pub fn alternatives(paper: Paper, reproductions: &[Reproduction], is_full: bool) -> String {
+    let mut alternatives = under_each_choice(paper, reproductions);
+    let defaults = alternatives.rows.first().map(|row| row[1..].to_vec());
+    let all = alternatives.rows.len();
+    let mut place = 0;
+    alternatives.rows.retain(|row| {
+        place += 1;
+        is_full || place == 1 || Some(&row[1..]) != defaults.as_deref()
+    });
+    let same = all - alternatives.rows.len();
     let mut header = vec![alternatives.measure];
     header.extend(&alternatives.filters);
     let mut table = table(&header);
     for row in alternatives.rows {
         table.add_row(row);
     }
-    format!("Each open choice by itself, the others at their defaults\n{table}\n")
+    let left_out = match same {
+        0 => String::new(),
+        1 => "1 other choice changes none of these figures.\n".to_owned(),
+        same => format!("{same} other choices change none of these figures.\n"),
+    };
+    format!("Each open choice by itself, the others at their defaults\n{table}\n{left_out}")
 }
 
 /// The open parameters of a scenario and their alternatives.
