@@ -62,6 +62,9 @@ use nalgebra::{Matrix1, Matrix3, RowVector3, U1, U3, Vector3};
 /// }
 /// ```
 ///
+/// Errata: the theorem asks only for bounded errors of the single filters and detectable pairs, which this instance has; what holds in
+/// its place is in the head of this file.
+///
 /// Evidence: `the_mixed_covariances_of_the_theorem_s_instance_grow` (exact).
 pub fn growing_mixture<T: Field>() -> [Riccati<T, 3, 1>; 2] {
     let n = |value: i64| T::integer(value);
