@@ -741,11 +741,20 @@ fn a_judge_of_zhu2016_follows_the_runs() {
     let models = [
         "constant-velocity",
         "coordinated-turn",
+        "left-turn",
         "constant-velocity-ten-times-noise",
     ];
+    let as_it_is = models.map(|model| of("single-model", model));
+    // Every one of the models of the filter is asked about.
+    for (place, model) in models[..3].iter().enumerate() {
+        let mut one = as_it_is.clone();
+        one[place] = exchanged(&one[place], first, single);
+        let judgement = imm_beats_single_model(s, &one);
+        assert_eq!(judgement.verdict, Verdict::Refuted, "{model}: {}", judgement.evidence);
+    }
     let other_way = models.map(|model| exchanged(&of("single-model", model), first, single));
     for judge in [
-        better_than_single_model as Judge<[Experiment; 3]>,
+        better_than_single_model as Judge<[Experiment; 4]>,
         imm_beats_single_model,
         single_model_worst,
     ] {

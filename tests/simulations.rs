@@ -133,6 +133,9 @@ fn every_alternative_of_zhu2016_means_what_its_sentence_says() {
             ("single-model", "coordinated-turn", |s, d| {
                 s.contestants[3].problem.modes == [d.contestants[0].problem.modes[1].clone()]
             }),
+            ("single-model", "left-turn", |s, d| {
+                s.contestants[3].problem.modes == [d.contestants[0].problem.modes[2].clone()]
+            }),
             ("single-model", "constant-velocity-ten-times-noise", |s, d| {
                 let (mode, default) = (&s.contestants[3].problem.modes[0], &d.contestants[3].problem.modes[0]);
                 mode.motion == default.motion && mode.noise == default.noise * 10.0

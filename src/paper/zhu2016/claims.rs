@@ -60,6 +60,7 @@ pub fn judge(effort: Effort, progress: Progress) -> Result<Vec<JudgedClaim>, Inv
     let single_models = [
         experiment("single-model", "constant-velocity")?,
         experiment("single-model", "coordinated-turn")?,
+        experiment("single-model", "left-turn")?,
         experiment("single-model", "constant-velocity-ten-times-noise")?,
     ];
     let range_bearing = [
@@ -141,7 +142,7 @@ pub fn linear_accuracy(s: &Specification, printed: &Experiment) -> JudgedClaim {
 }
 
 /// The first filter beside the one of a single model, whichever that is.
-pub fn better_than_single_model(s: &Specification, experiments: &[Experiment; 3]) -> JudgedClaim {
+pub fn better_than_single_model(s: &Specification, experiments: &[Experiment; 4]) -> JudgedClaim {
     let mut differences = Vec::new();
     let mut evidence = String::from("IMM5CKF minus single 5CKF, error of position:");
     for experiment in experiments {
@@ -222,10 +223,11 @@ pub fn switching_sensitivity(s: &Specification, printed: &Experiment) -> JudgedC
 }
 
 /// The first filter beside those of one model, in turns and on straight parts.
-pub fn imm_beats_single_model(s: &Specification, experiments: &[Experiment; 3]) -> JudgedClaim {
+pub fn imm_beats_single_model(s: &Specification, experiments: &[Experiment; 4]) -> JudgedClaim {
     let mut evidence = String::from("IMM5CKF minus the single filter, error of position:");
     let mut differences = Vec::new();
-    for experiment in &experiments[..2] {
+    // The three models of the filter, with the noise that it gives them.
+    for experiment in &experiments[..3] {
         let comparison = experiment.comparison();
         let schedule = &experiment.scenario.schedule;
         let straight = |k: usize| schedule[k] == Course::Straight;
@@ -284,7 +286,7 @@ pub fn no_divergence(s: &Specification, printed: &Experiment) -> JudgedClaim {
 }
 
 /// The filter of one model beside all others.
-pub fn single_model_worst(s: &Specification, experiments: &[Experiment; 3]) -> JudgedClaim {
+pub fn single_model_worst(s: &Specification, experiments: &[Experiment; 4]) -> JudgedClaim {
     let mut differences = Vec::new();
     let mut evidence = String::from("Single 5CKF minus the worst of the others, error of position:");
     for experiment in experiments {

@@ -280,6 +280,7 @@ impl Builder {
     fn single(&self, alternative: &str) -> Contestant {
         let (motion, noise) = match alternative {
             "coordinated-turn" => (Course::RightTurn, self.noise),
+            "left-turn" => (Course::LeftTurn, self.noise),
             "constant-velocity-ten-times-noise" => (Course::Straight, 10.0 * self.noise),
             _ => (Course::Straight, self.noise),
         };
