@@ -802,7 +802,7 @@ fn a_judge_of_liu2017_follows_the_runs() {
     ] {
         let runs = times(factor);
         for judgement in [
-            better_accuracy(s, &runs),
+            better_accuracy(s, &runs, std::slice::from_ref(&runs)),
             outperforms_in_manoeuvres(s, &runs),
             higher_accuracy_than_fifth_degree(s, &runs),
         ] {
@@ -811,6 +811,10 @@ fn a_judge_of_liu2017_follows_the_runs() {
         let judgement = constant_velocity(s, &runs);
         assert_eq!(judgement.verdict, same, "{factor}: {}", judgement.evidence);
     }
+    // What holds at one initial covariance and not at another depends on what is not printed.
+    let (better, worse) = (times(2.0), times(0.5));
+    let judgement = better_accuracy(s, &better, std::slice::from_ref(&worse));
+    assert_eq!(judgement.verdict, Verdict::DependsOnChoice, "{}", judgement.evidence);
     // The delays of the four filters, in steps of a second.
     for (delays, quicker, fifth_degree) in [
         ([2, 2, 2, 1], Verdict::Confirmed, Verdict::Refuted),
