@@ -14,6 +14,8 @@ use immaculate::report::reproduction::SideBySide;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
+// Each is a switch of the command line.
+#[allow(clippy::struct_excessive_bools)]
 #[derive(Args)]
 pub struct ReproduceArguments {
     /// The papers; all when none is given [possible: derbez2000, sustika2015, zhu2016, liu2017]

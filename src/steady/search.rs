@@ -126,7 +126,7 @@ where
     Shapes: Holds<N>,
 {
     let forms = forms(matrices, edges)?;
-    let greatest = forms.iter().map(|form| form.amax()).fold(0.0, f64::max);
+    let greatest = forms.iter().map(OMatrix::amax).fold(0.0, f64::max);
     let scales = (1..16).flat_map(|digits| [1.0, 2.0, 5.0].map(|factor| factor * power_of_ten(digits)));
     scales
         .map(|scale| Quadratics {
