@@ -1,8 +1,7 @@
-//! The command line: the commands by name, what is printed, and the exit status; each command is a file of `cli`.
+//! The command line: the commands, printing, and the exit status. Each command is a file of `cli`.
 //!
-//! Exit status: 0 when the command did what was asked, or nobody wanted to read on, 1 when its output could not be written, what it
-//! checked is wrong or a filter came to a step that it could not do, 2 when its arguments or its input are wrong or name something that
-//! does not exist.
+//! Exit status: 0 if the command is done or the reader of its output stopped reading; 1 if output could not be written, something
+//! checked is wrong, or a filter could not compute a step; 2 if arguments or input are wrong or name something that does not exist.
 
 mod cli;
 
@@ -19,7 +18,7 @@ use std::process::ExitCode;
 #[derive(Parser)]
 #[command(name = "immaculate", version, about, arg_required_else_help = true)]
 #[command(
-    after_help = "Exit status: 0 done, 1 output could not be written, something that was checked is wrong, or a filter came to a step it could not do, 2 the arguments or the input are wrong or name something that does not exist. A reader that stops reading is no error."
+    after_help = "Exit status: 0 done; 1 output could not be written, something checked is wrong, or a filter could not compute a step; 2 arguments or input are wrong or name something that does not exist. It is no error if the reader of the output stops reading."
 )]
 pub struct Cli {
     #[command(subcommand)]
@@ -28,31 +27,31 @@ pub struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Judge a filter in any language: right to so many digits, or wrong in which equation, and why
+    /// Judge a filter in any language: whether it is right, or which equation is wrong and why
     Check(cli::check::CheckArguments),
-    /// Write a small filter with its adapter, which passes `check`, in Python, C++, Octave or Rust: your own takes its place
+    /// Write a small filter that passes `check`, with its adapter, in Python, C++, Octave or Rust; replace it with yours
     Init(cli::init::InitArguments),
-    /// Run a problem file and print every value of every step; with --digits, proven
+    /// Run a problem file and print every value of every step, with --digits to proven digits
     Trace(cli::trace::TraceArguments),
-    /// List, show, copy and prove the certified cases
+    /// List, show, copy or prove the certified cases
     Cases(cli::cases::CasesArguments),
     /// List the catalogue of mistakes, conventions and forms that `check` can name
     Variants(cli::variants::VariantsArguments),
-    /// Show an equation of the papers: formula, erratum, derivation, code, tests, and what catches mistakes in it
+    /// Show an equation of the papers: formula, erratum, derivation, code, tests, and the cases that catch mistakes in it
     Equation(cli::equation::EquationArguments),
-    /// Write a static site: how a filter is checked, mistakes, cases, the papers in figures and claims, the book of equations
+    /// Write a static site: how filters are checked, mistakes, cases, the papers' figures and claims, the book of equations
     Report(cli::report::ReportArguments),
-    /// Rerun the papers' simulations and set their tables beside the published ones
+    /// Rerun the papers' simulations and print their tables beside the published ones
     Reproduce(cli::reproduce::ReproduceArguments),
-    /// Judge what the papers claim, each claim by computation
+    /// Judge the papers' claims, each by computation
     Claims(cli::claims::ClaimsArguments),
     /// List the open parameters of the papers' scenarios and their alternatives
     Choices(cli::choices::ChoicesArguments),
-    /// List a cubature rule: points and weights, exact and decimal, with its proven degree
+    /// List the points and weights of a cubature rule, exact and decimal, with its proven degree
     Rule(cli::rule::RuleArguments),
-    /// Prove two fixed-gain filters that exchange estimates stable together, or unstable; map, certificates
+    /// Prove that two fixed-gain filters that mix their estimates are stable together, or unstable; map, certificates
     Stability(cli::stability::StabilityArguments),
-    /// Be a program under test: this crate's own filter, with mistakes planted on demand
+    /// Act as a program under test: the built-in filter, with planted mistakes if you like
     Answer(cli::answer::AnswerArguments),
 }
 
@@ -60,10 +59,11 @@ fn main() -> ExitCode {
     ExitCode::from(status_of(std::env::args_os()))
 }
 
-/// Does what the arguments ask for, the first of them the program's name, and says and prints what it has to; the exit status.
+/// Runs the command that the arguments ask for, the first of them being the program's name. Prints its output and messages; returns the
+/// exit status.
 pub fn status_of(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
-    // A script whose variable is empty must not be taken for somebody who asks what a check is.
+    // A script whose variable is empty must not get the demonstration of a check.
     if arguments.last().is_some_and(|last| last == "--") {
         return complain("nothing to check: there is no program after `--`", 2);
     }
@@ -96,7 +96,7 @@ pub fn status_of(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     }
 }
 
-/// Whether the arguments are those of a check with a program that no `--` stands before.
+/// Whether the arguments are a check with a program but without the `--` before it.
 fn lacks_dashes(error: &clap::Error) -> bool {
     let mut arguments = std::env::args_os().skip(1);
     let is_check = arguments.next().is_some_and(|command| command == "check");
@@ -105,7 +105,7 @@ fn lacks_dashes(error: &clap::Error) -> bool {
     error.kind() == ErrorKind::UnknownArgument && is_check && is_word && arguments.all(|argument| argument != "--")
 }
 
-/// Does what the arguments ask for.
+/// Runs the command that the arguments ask for.
 ///
 /// # Errors
 ///

@@ -345,7 +345,7 @@ fn the_list_has_every_case_and_every_selection_its_own() {
     for action in [&["list"][..], &["verify"], &["copy", "unused"]] {
         for selection in [["--case", "no.such"], ["--flag", "no-such"], ["--kind", "no-such"]] {
             let complaint = refuses(&[&["cases"], action, &selection].concat(), 2);
-            assert!(complaint.contains("no case has what was selected"), "{complaint}");
+            assert!(complaint.contains("no case matches the selection"), "{complaint}");
         }
     }
 }

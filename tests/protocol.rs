@@ -578,15 +578,15 @@ fn a_kind_or_format_that_does_not_exist_is_refused() {
     };
     assert_eq!(
         refused(&["kalmann"], &["immaculate-problem/1"]),
-        "the program declares the kind of filter \"kalmann\", and there is none of this name; the nearest is `kalman`"
+        "the program declares the kind of filter \"kalmann\", which does not exist; the nearest is `kalman`"
     );
     assert_eq!(
         refused(&["kalman", "particle"], &["immaculate-problem/1"]),
-        "the program declares the kind of filter \"particle\", and there is none of this name"
+        "the program declares the kind of filter \"particle\", which does not exist"
     );
     assert_eq!(
         refused(&["kalman"], &["immaculate-problem/3"]),
-        "the program declares the format \"immaculate-problem/3\", and there is none of this name; the nearest is `immaculate-problem/1`"
+        "the program declares the format \"immaculate-problem/3\", which does not exist; the nearest is `immaculate-problem/1`"
     );
 }
 
@@ -652,7 +652,7 @@ fn a_problem_that_must_be_rejected_must_be_rejected() {
     assert!(is_wrong, "a crash is no rejection");
 }
 
-/// A program that leaves the checking to its caller and does not say so is told once.
+/// A program that leaves checks to its caller and does not say so is reported once.
 #[test]
 fn problems_that_are_all_run_though_they_must_be_rejected_are_said_once() {
     let text_on = |answer: fn(&ProblemFile) -> Answer| {
@@ -1034,7 +1034,7 @@ fn exit_statuses_are_those_of_the_help() {
         (&["check", "--strict"][..], "nothing to check"),
         (
             &["check", "--case", "no.such", "--", own, "answer"],
-            "no case has what was selected",
+            "no case matches the selection",
         ),
         (
             &["check", "--case", "update.kalman", "--", "/no/such/program"],
@@ -1155,11 +1155,11 @@ fn two_mistakes_at_once_are_named() {
 
 // A program under test in this process
 
-/// A filter that introduces itself and answers as it is told.
+/// A filter that introduces itself and answers as instructed.
 struct Double {
     ready: Ready,
     answer: fn(&ProblemFile) -> Answer,
-    /// So many steps of a right answer are shown.
+    /// The number of steps of a right answer that are shown.
     steps: usize,
     error: Option<String>,
     asked: Vec<String>,

@@ -68,7 +68,7 @@ fn init_overwrites_nothing() {
     let output = immaculate(&["init", "cpp", folder.to_str().unwrap()]).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert!(
-        error_of(&output).contains("immaculate.hpp is there already"),
+        error_of(&output).contains("immaculate.hpp exists already"),
         "{}",
         error_of(&output)
     );
@@ -116,7 +116,7 @@ fn the_filter_in_rust_is_right_on_all_that_it_declares() {
         text.contains("RIGHT on what was judged: my filter, double precision: "),
         "{text}"
     );
-    // None is skipped or drowned: so many are right of as many.
+    // None is skipped or drowned: all of them are right.
     let words: Vec<&str> = text.split_whitespace().collect();
     let is_all = |four: &[&str]| four[0] == four[3] && four[1..3] == ["right", "of"];
     assert!(words.windows(4).any(is_all), "{text}");

@@ -1,4 +1,4 @@
-//! Goal: whoever changes the program sees what the change does to the words, tables and pictures that people look at, and to the JSON
+//! Goal: a change of the program shows its effect on the words, tables and pictures that people look at, and on the JSON
 //! beside them.
 //!
 //! Method: snapshots of what is printed and drawn, from values that stand here and are small enough to be followed by eye; no filter is
@@ -228,7 +228,7 @@ fn of_every_outcome() -> Report {
         diagnosis: Diagnosis::One(vec![found("mixed-spread-omitted")]),
         hidden: vec![Gain, LogLikelihood],
         observations: of_every_kind(),
-        remarks: vec!["the program wrote to standard output what is no message".into()],
+        remarks: vec!["the program wrote something to standard output that is not a message".into()],
     }
 }
 
@@ -616,7 +616,7 @@ fn rows() -> [DivergenceRow; 2] {
     ]
 }
 
-/// Figures that can be told apart, for as many filters as the paper's first table has columns; two steps.
+/// Distinct figures, for as many filters as the paper's first table has columns; two steps.
 fn reproduction(paper: Paper, choices: Choices) -> Reproduction {
     let names = &paper.specification().tables[0].columns;
     let filters: Vec<Performance> = names

@@ -1,4 +1,4 @@
-"""Goal: a right filter is right, a wrong one is wrong and told why, and nothing that a filter does or shows upsets the check."""
+"""Goal: a right filter is right, a wrong one is wrong with a reason, and nothing that a filter does or shows upsets the check."""
 
 import numpy as np
 import pytest
@@ -177,7 +177,7 @@ def test_what_is_no_filter_is_refused_at_once():
 def test_a_request_that_cannot_be_met_is_told_in_a_sentence():
     with pytest.raises(ValueError, match="the nearest is `kalman`"):
         immaculate.check(Imm, kinds=["kalmann"])
-    with pytest.raises(ValueError, match="no case has what was selected"):
+    with pytest.raises(ValueError, match="no case matches the selection"):
         immaculate.check(Imm, cases=["no-such-case"])
     with pytest.raises(TypeError, match=r"write \['kalman'\]"):
         immaculate.check(Imm, kinds="kalman")

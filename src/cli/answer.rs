@@ -1,6 +1,4 @@
-//! `immaculate answer`: this crate's own filter in doubles as a program under test.
-//!
-//! After this file the reader knows how this crate answers the messages of a check, which is how any program does.
+//! `immaculate answer`: this crate's own filter in doubles, as a program under test. It answers a check's messages as any program does.
 
 use super::{Done, Refusal, print};
 use clap::{Args, ValueEnum};
@@ -9,24 +7,24 @@ use immaculate::oracle::answer::{Message, respond};
 use immaculate::oracle::subject::{Level, Planted};
 use immaculate::oracle::variant::find;
 
-/// How much is shown.
+/// How much of a trace the filter shows.
 #[derive(Clone, Copy, ValueEnum)]
 enum Show {
     /// Every value of a trace
     Everything,
     /// Updated estimates, mode probabilities and the combined estimate
     Posteriors,
-    /// The combined estimate alone
+    /// Only the combined estimate
     Combined,
 }
 
 #[derive(Args)]
 #[command(after_help = "Try: immaculate check -- immaculate answer --plant mixed-spread-omitted")]
 pub struct AnswerArguments {
-    /// Plant a variant of the catalogue, to see how it is found; may be given again (`immaculate variants` lists them)
+    /// Plant a variant of the catalogue, to see how it is found; may be repeated (`immaculate variants` lists them)
     #[arg(long = "plant", value_name = "VARIANT")]
     variants: Vec<String>,
-    /// How much of a trace is shown
+    /// How much of a trace to show
     #[arg(long, value_enum, default_value = "everything")]
     show: Show,
 }

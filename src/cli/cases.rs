@@ -1,6 +1,6 @@
 //! `immaculate cases`: the published cases.
 //!
-//! After this file the reader knows how cases are listed, copied and proven again.
+//! Cases are listed, shown, copied and proven again.
 
 use super::progress::bar;
 use super::select::Select;
@@ -24,7 +24,7 @@ pub struct CasesArguments {
 
 #[derive(Subcommand)]
 enum Action {
-    /// List the cases with what each is for
+    /// List the cases and the purpose of each
     List {
         #[command(flatten)]
         select: Select,
@@ -42,12 +42,12 @@ enum Action {
     },
     /// Copy the cases to a folder: problems and traces as JSON, traces as long CSV
     Copy {
-        /// The folder; it is made if it is not there
+        /// The folder; it is created if needed
         folder: PathBuf,
         #[command(flatten)]
         select: Select,
     },
-    /// Prove every number of the cases again, from nothing but the problems
+    /// Prove every number of the cases again, from the problems alone
     Verify {
         #[command(flatten)]
         select: Select,
@@ -57,7 +57,7 @@ enum Action {
     },
     /// Print the JSON Schema of problem, trace or certificate files
     Schema {
-        /// Which
+        /// The format
         #[arg(value_enum)]
         of: Format,
     },

@@ -1,6 +1,6 @@
 //! `immaculate check`: judges a program under test.
 //!
-//! After this file the reader knows what a check can be asked for, and what its exit status means.
+//! The arguments of a check, and its exit status.
 
 use super::outputs::Outputs;
 use super::progress::bar;
@@ -23,21 +23,21 @@ use std::time::Duration;
     `immaculate init` writes a small adapter to begin with. The protocol and the file formats are in spec/formats.md; examples in several languages are in tests/adapters."
 )]
 pub struct CheckArguments {
-    /// The program under test and its arguments; it is started once and spoken to in JSON lines
+    /// The program under test and its arguments; it is started once and exchanges JSON lines
     #[arg(last = true, value_name = "COMMAND")]
     command: Vec<String>,
     /// Judge answer files instead of a program: ID.json or ID.csv for each case, in this folder
     #[arg(long, value_name = "DIR", conflicts_with = "command")]
     answers: Option<PathBuf>,
-    /// Judge by this problem of your own instead of the published cases: a file, or a folder of them (`*.json`); may be given again
+    /// Use your own problem instead of the published cases: a file, or a folder of `*.json` files; may be repeated
     #[arg(long = "problem", value_name = "FILE", conflicts_with_all = ["cases", "flags", "kinds"])]
     problems: Vec<PathBuf>,
     #[command(flatten)]
     select: Select,
-    /// The time that the program has for each case, in seconds
+    /// The time limit for each case, in seconds
     #[arg(long, value_name = "SECONDS", default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..=3600))]
     timeout: u64,
-    /// End with status 1 also where something that a filter may meet was not judged
+    /// Also end with status 1 if some situation was not judged
     #[arg(long, conflicts_with = "problems")]
     strict: bool,
     #[command(flatten)]
@@ -50,7 +50,7 @@ pub struct CheckArguments {
 }
 
 impl CheckArguments {
-    /// Whether nothing is asked for but to be shown what a check is.
+    /// Whether only the demonstration is asked for.
     fn is_bare(&self) -> bool {
         let has_subject = self.answers.is_some() || !self.command.is_empty();
         let is_about_something = !self.problems.is_empty() || self.search.time().is_some() || !self.select.is_empty();
@@ -129,7 +129,7 @@ fn own_problems(paths: &[PathBuf]) -> Result<Vec<ProblemFile>, Refusal> {
     Ok(problems)
 }
 
-/// A file itself, or the `*.json` files of a folder; it is a mistake to name a folder without any.
+/// A file itself, or the `*.json` files of a folder; a folder without any is an error.
 fn files_of(path: &Path) -> Result<Vec<PathBuf>, Refusal> {
     if !path.is_dir() {
         return Ok(vec![path.to_owned()]);

@@ -1,6 +1,6 @@
 //! `immaculate choices`: what the papers leave open, and the alternatives by name.
 //!
-//! After this file the reader knows where the names for `reproduce --set` come from.
+//! `reproduce --set` takes these names.
 
 use super::{Done, json_text, papers};
 use clap::Args;
@@ -10,7 +10,7 @@ use serde_json::json;
 
 #[derive(Args)]
 pub struct ChoicesArguments {
-    /// The papers; all when none is given [possible: derbez2000, sustika2015, zhu2016, liu2017]
+    /// The papers; all by default [possible: derbez2000, sustika2015, zhu2016, liu2017]
     papers: Vec<Paper>,
     /// Print JSON instead of text
     #[arg(long)]

@@ -1,20 +1,19 @@
-//! `immaculate check` without a program: what a verdict looks like, and how to get one on one's own filter.
+//! `immaculate check` without a program: shows what a verdict looks like, and how to get one for your own filter.
 //!
-//! After this file the reader knows that nothing is staged: the demonstration is a check as any other, of this crate's own filter with a
-//! classic mistake in it.
+//! Nothing is staged: the demonstration is an ordinary check of this crate's own filter with a classic mistake in it.
 
 use super::Refusal;
 use immaculate::oracle::check::{Selection, check};
 use immaculate::oracle::subject::{Level, Planted};
 use immaculate::report;
 
-/// The mistake, and the cases that are asked; `immaculate answer` plants the same.
+/// The mistake and the cases; `immaculate answer` plants the same.
 const MISTAKE: &str = "mixed-spread-omitted";
 const CASES: &str = "step.n4-m2";
 
 const ABOVE: &str = "\
-This is what a verdict looks like. Under test is Immaculate's own filter, with a classic mistake planted in it:
-the mixed covariance lacks the spread of the means. It is the same as
+This is what a verdict looks like. The filter under test is Immaculate's own, with a classic mistake planted in it:
+the mixed covariance lacks the spread of the means. This command does the same:
 
   immaculate check --case step.n4-m2 -- immaculate answer --plant mixed-spread-omitted
 
@@ -23,13 +22,13 @@ the mixed covariance lacks the spread of the means. It is the same as
 const BELOW: &str = "
 YOUR OWN FILTER
   immaculate init python
-      writes my_filter.py, a textbook filter that is right, with a mark where yours goes; also cpp, octave, rust
+      writes my_filter.py, a correct textbook filter that marks where yours goes; also cpp, octave, rust
   immaculate check -- python3 my_filter.py
-      judges it on all cases; with --report verdict.html the verdict is a page
+      judges it on all cases; --report verdict.html also writes the verdict as a page
   immaculate check --problem FILE -- python3 my_filter.py
       judges it on your own models and data
   immaculate check --help
-      says what else there is
+      lists all options
 ";
 
 /// The demonstration.

@@ -1,6 +1,4 @@
 //! `immaculate equation`: the book of equations, one equation at a time.
-//!
-//! After this file the reader knows how an equation is asked for.
 
 use super::{Done, Refusal, json_text};
 use clap::Args;
@@ -10,8 +8,8 @@ use serde_json::json;
 
 #[derive(Args)]
 pub struct EquationArguments {
-    /// A paper's key and a number or name (`zhu2016 56`), the name of a value (`mixed.covariance`) or of a function
-    /// (`mixture_covariance`); a paper alone, or nothing, lists all
+    /// A paper's key and a number or name (`zhu2016 56`), or the name of a value (`mixed.covariance`) or function (`mixture_covariance`);
+    /// a paper alone lists its equations, and nothing lists all
     #[arg(value_name = "ID")]
     name: Vec<String>,
     /// Print JSON instead of text

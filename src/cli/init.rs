@@ -1,7 +1,6 @@
-//! `immaculate init`: writes a small filter that passes `immaculate check`, with its adapter; one's own filter goes in its place.
+//! `immaculate init`: writes a small filter that passes `immaculate check`, with its adapter, for users to replace with their own filter.
 //!
-//! After this file the reader knows what is written in each language, and that no file that is there is ever touched. The templates are in
-//! `tests/adapters/templates/`; what they stand on, beside it.
+//! An existing file is never touched. The templates are in `tests/adapters/templates/`; the files that they need stand beside it.
 
 use super::search::quoted;
 use super::{Done, Refusal, make_directory, write_file};
@@ -13,7 +12,7 @@ use std::path::{Path, PathBuf};
 enum Language {
     /// `my_filter.py`, with numpy
     Python,
-    /// `main.cpp`, with Eigen, and the header that speaks with Immaculate
+    /// `main.cpp`, with Eigen, and the header that talks to Immaculate
     Cpp,
     /// `my_filter.m`, and the package `+immaculate`; not tried with MATLAB
     Octave,
@@ -21,16 +20,16 @@ enum Language {
     Rust,
 }
 
-/// Writes a textbook filter that is right, with the adapter through which Immaculate speaks with it; the place of your own filter is marked
-/// CHANGE HERE.
+/// Writes a correct textbook filter with the adapter through which Immaculate talks to it. CHANGE HERE marks the place for your own
+/// filter.
 #[derive(Args)]
 #[command(
-    after_help = "It prints the commands that come next. A file that is there is never overwritten: nothing is written then, and the exit status is 2."
+    after_help = "It prints the commands to run next. An existing file is never overwritten: nothing is written then, and the exit status is 2."
 )]
 pub struct InitArguments {
     #[arg(value_enum)]
     language: Language,
-    /// The folder; it is made if it is not there
+    /// The folder; it is created if needed
     #[arg(value_name = "DIR", default_value = ".")]
     folder: PathBuf,
 }
@@ -95,7 +94,7 @@ impl Language {
         }
     }
 
-    /// What is run next, in the folder.
+    /// The commands to run next, in the folder.
     fn commands(self) -> &'static [&'static str] {
         match self {
             Self::Python => &["immaculate check -- python3 my_filter.py"],
@@ -122,7 +121,7 @@ pub fn run(arguments: &InitArguments) -> Result<Done, Refusal> {
         if path.symlink_metadata().is_ok() {
             let path = path.display();
             return Err(Refusal::request(format!(
-                "{path} is there already, and is not overwritten; give the name of another folder"
+                "{path} exists already and is not overwritten; give another folder"
             )));
         }
     }
@@ -142,6 +141,6 @@ pub fn run(arguments: &InitArguments) -> Result<Done, Refusal> {
     for command in language.commands() {
         let _ = writeln!(text, "  {command}");
     }
-    text.push_str("\nIt is right as it stands. Your own filter goes where CHANGE HERE is written.\n");
+    text.push_str("\nThe filter is right as it stands. Replace the part marked CHANGE HERE with your own.\n");
     Ok(text.into())
 }

@@ -1,6 +1,4 @@
-//! The commands, one file each: arguments in, text and exit status out.
-//!
-//! After this folder the reader knows how each command calls the library.
+//! The commands, one file each: arguments in, text and exit status out. The library does the work.
 
 pub mod answer;
 pub mod cases;
@@ -28,7 +26,7 @@ use immaculate::paper::{self, Effort, Paper};
 use std::io::Write;
 use std::path::Path;
 
-/// What a command could not do.
+/// Why a command could not be carried out.
 pub enum Refusal {
     /// It was asked for something that does not exist.
     Request(String),
@@ -43,13 +41,13 @@ impl Refusal {
     }
 }
 
-/// What a command did: what it prints, and its exit status.
+/// The result of a command: its text and its exit status.
 pub struct Done {
     /// What is printed.
     pub text: String,
     /// The exit status.
     pub status: u8,
-    /// What kept the command from coming to its end: it is said after what is printed, and the exit status is 1.
+    /// The reason why the command did not finish: it is printed after the text, and the exit status is 1.
     pub complaint: Option<String>,
 }
 
@@ -68,7 +66,7 @@ pub fn json_text(value: &serde_json::Value) -> String {
     format!("{value:#}\n")
 }
 
-/// Writes to standard output; whether somebody reads it. A reader that has gone away has read enough, and that is no error.
+/// Writes to standard output, and returns whether it is still read. It is no error if the reader has gone away.
 pub fn print(text: &str) -> Result<bool, Refusal> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
@@ -83,7 +81,7 @@ pub fn write_file(path: &Path, content: &str) -> Result<(), Refusal> {
     file::write(path, content).map_err(|error| Refusal::Output(about(path, &error)))
 }
 
-/// Makes a directory, and those it is in, where they are not there.
+/// Creates a directory and its parents where they do not exist.
 pub fn make_directory(path: &Path) -> Result<(), Refusal> {
     std::fs::create_dir_all(path).map_err(|error| Refusal::Output(about(path, &error)))
 }
@@ -102,7 +100,7 @@ fn about(path: &Path, error: &std::io::Error) -> String {
     format!("{}: {error}", path.display())
 }
 
-/// The given papers; all when there is none.
+/// The given papers; all if none is given.
 pub fn papers(given: &[Paper]) -> Vec<Paper> {
     if given.is_empty() {
         Paper::ALL.to_vec()
@@ -122,7 +120,7 @@ pub fn effort(runs: Option<u64>, seed: u64) -> Effort {
     }
 }
 
-/// The judges keep runs in memory, and each paper's has room for so many.
+/// Refuses more runs than a paper's judges can keep in memory.
 pub fn check_that_memory_does(papers: &[Paper], effort: Effort) -> Result<(), Refusal> {
     for paper in papers {
         let most = paper.most_judged_runs();

@@ -1,6 +1,4 @@
-//! Where `immaculate check` writes its verdict beside the terminal.
-//!
-//! After this file the reader knows which files there are, and that a path at which none can be is refused before anything is checked.
+//! The files to which `immaculate check` writes its verdict. A path that cannot be written is refused before anything is checked.
 
 use super::{Refusal, write_file};
 use clap::Args;
@@ -9,36 +7,36 @@ use immaculate::report::verdict::{badge, junit, markdown, page};
 use std::path::{Path, PathBuf};
 
 #[derive(Args)]
-#[command(next_help_heading = "Files beside what is printed")]
+#[command(next_help_heading = "Output files")]
 pub struct Outputs {
-    /// Write the verdict as JUnit XML: a suite a kind of filter, a test a case, for GitLab, Jenkins and GitHub
+    /// Write the verdict as JUnit XML for GitLab, Jenkins and GitHub: one suite per kind of filter, one test per case
     #[arg(long, value_name = "FILE", conflicts_with = "search")]
     junit: Option<PathBuf>,
     /// Write a summary for a pull request, or for the file that `$GITHUB_STEP_SUMMARY` names
     #[arg(long, value_name = "FILE", conflicts_with = "search")]
     markdown: Option<PathBuf>,
-    /// Write one page of HTML, which needs no network and no script: causes, each fault in its equation and over the steps
+    /// Write one HTML page, which needs no network and no script: causes, and each fault in its equation and over the steps
     #[arg(long, value_name = "FILE", conflicts_with = "search")]
     report: Option<PathBuf>,
-    /// Write a badge, an SVG picture: RIGHT, WRONG and how often, or right on what was judged
+    /// Write an SVG badge: RIGHT, RIGHT on what was judged, or WRONG with the number of cases
     #[arg(long, value_name = "FILE", conflicts_with = "search")]
     badge: Option<PathBuf>,
 }
 
 impl Outputs {
-    /// The files that are asked for.
+    /// The requested files.
     fn paths(&self) -> impl Iterator<Item = &PathBuf> {
         [&self.junit, &self.markdown, &self.report, &self.badge]
             .into_iter()
             .flatten()
     }
 
-    /// Whether none is asked for.
+    /// Whether no file is requested.
     pub fn is_empty(&self) -> bool {
         self.paths().next().is_none()
     }
 
-    /// Minutes of checking should not end with a path at which there can be no file.
+    /// A check of several minutes should not end with a path that cannot be written.
     pub fn check(&self) -> Result<(), Refusal> {
         self.paths().try_for_each(|path| check_that_a_file_can_be_there(path))
     }
@@ -60,7 +58,7 @@ fn not_made(path: &Path, reason: &str) -> Refusal {
     Refusal::Output(format!("{}: {reason}", path.display()))
 }
 
-/// Whether a file can be at a path, as far as that can be seen without writing it.
+/// Whether a file can be written at a path, as far as that can be known beforehand.
 fn check_that_a_file_can_be_there(path: &Path) -> Result<(), Refusal> {
     let directory = path.parent().filter(|directory| *directory != Path::new(""));
     let wrong = if path.is_dir() {

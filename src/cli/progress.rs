@@ -1,10 +1,10 @@
 //! Progress on standard error, for work that takes more than a moment.
 //!
-//! After this file the reader knows how a bar is made; it shows itself only where a person is watching.
+//! A bar is drawn only on a terminal.
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// A bar of a length, drawn after a template.
+/// A bar of a given length and template.
 pub fn bar(length: usize, template: &str) -> ProgressBar {
     ProgressBar::new(length as u64).with_style(style(template))
 }

@@ -1,6 +1,4 @@
 //! `immaculate report --out DIR`: everything as a small static site.
-//!
-//! After this file the reader knows how the pages are asked for, and what is shown while they are computed.
 
 use super::progress::style;
 use super::{Done, MOST_RUNS, Refusal, check_that_memory_does, effort, make_directory, write_file};
@@ -11,15 +9,15 @@ use immaculate::report::page::content::{Content, Extent, Watch};
 use indicatif::ProgressBar;
 use std::path::PathBuf;
 
-/// Writes a small static site: how a filter is checked, the catalogue of mistakes, the cases, the papers' figures, tables, claims and
-/// errata, and the book of equations. It starts at index.html and needs neither network nor script. With the papers' numbers of runs
-/// it takes some minutes.
+/// Writes a small static site: how filters are checked, the catalogue of mistakes, the cases, the papers' figures, tables, claims and
+/// errata, and the book of equations. Open index.html; the site needs no network and no script. With the papers' numbers of runs it
+/// takes some minutes.
 #[derive(Args)]
 pub struct ReportArguments {
-    /// The folder that is written; it is made if it does not exist
+    /// The folder to write; it is created if needed
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// The number of Monte-Carlo runs of everything; when not given the papers' own, and what the judges of claims ask for
+    /// The number of Monte Carlo runs for everything; by default the papers' own numbers, and for the claims what their judges need
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=MOST_RUNS))]
     runs: Option<u64>,
     /// The seed of the random numbers
@@ -27,7 +25,7 @@ pub struct ReportArguments {
     seed: u64,
 }
 
-/// Points a side of the stability map, as `immaculate stability --map` has them.
+/// Points along each side of the stability map, as in `immaculate stability --map`.
 const MAP_POINTS: usize = 49;
 
 /// Computes the pages and writes them.

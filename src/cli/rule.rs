@@ -1,6 +1,4 @@
 //! `immaculate rule`: a cubature rule with its proven degree.
-//!
-//! After this file the reader knows how a rule and its parameters are asked for.
 
 use super::{Done, Refusal, json_text};
 use clap::Args;
@@ -23,7 +21,7 @@ pub struct RuleArguments {
     /// β of the unscented rule, as a decimal
     #[arg(long, value_name = "DECIMAL", allow_negative_numbers = true)]
     beta: Option<String>,
-    /// κ of the unscented rule, as a decimal; 3 − n when not given
+    /// κ of the unscented rule, as a decimal; 3 − n by default
     #[arg(long, value_name = "DECIMAL", allow_negative_numbers = true)]
     kappa: Option<String>,
     /// Print JSON instead of a table
@@ -48,7 +46,7 @@ pub fn run(arguments: &RuleArguments) -> Result<Done, Refusal> {
     Ok(report::rule::text(&description).into())
 }
 
-/// The parameters that are given, the others as in Julier and Uhlmann's original form.
+/// The given parameters; the others as in Julier and Uhlmann's original form.
 fn unscented_parameters(arguments: &RuleArguments) -> Result<unscented::Parameters, Refusal> {
     let mut parameters = unscented::Parameters::for_gaussian(arguments.dimension);
     let given = [

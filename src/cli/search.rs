@@ -1,6 +1,6 @@
 //! `immaculate check --search`: looks for a problem on which a program fails.
 //!
-//! After this file the reader knows where what is found is written, and how it is seen again.
+//! The problem that is found is written to a file, and the report ends with the command to see it again.
 
 use super::progress::bar;
 use super::{Done, Refusal, json_text, write_file};
@@ -14,7 +14,7 @@ use immaculate::report;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// Shrinking ends after so many problems, or so long.
+/// The limits of shrinking: a number of problems and a time.
 const SHRINKING: ShrinkingLimits = ShrinkingLimits {
     tries: 3000,
     time: Duration::from_secs(60),
@@ -22,15 +22,15 @@ const SHRINKING: ShrinkingLimits = ShrinkingLimits {
 
 #[derive(Args)]
 pub struct SearchArguments {
-    /// Search for a problem on which the program fails, for so many seconds: random problems of all that it declares, or with --problem
-    /// problems around that one; the first failure is made as small as it can be, explained, and written to a file
+    /// Search for this many seconds for a problem on which the program fails: random problems of all kinds that it declares, or variations
+    /// of --problem; the first failure is shrunk, explained, and written to a file
     #[arg(long, value_name = "SECONDS", num_args = 0..=1, default_missing_value = "30", value_parser = clap::value_parser!(u64).range(1..=86400),
           conflicts_with_all = ["answers", "cases", "flags", "strict"])]
     search: Option<u64>,
-    /// The seed of a search: another one draws other problems
+    /// The seed of the search; another seed draws other problems
     #[arg(long, value_name = "N", default_value_t = 1, requires = "search")]
     seed: u64,
-    /// Where a search writes the problem that it finds
+    /// Where the search writes the problem that it finds
     #[arg(
         long,
         value_name = "FILE",
@@ -51,9 +51,9 @@ impl SearchArguments {
 pub struct About {
     /// The time.
     pub time: Duration,
-    /// The kinds of filter; all where there is none.
+    /// The kinds of filter; all if empty.
     pub kinds: Vec<String>,
-    /// The problems around which is searched.
+    /// The problems to vary.
     pub problems: Vec<ProblemFile>,
     /// The command of the program.
     pub command: Vec<String>,
@@ -81,7 +81,7 @@ pub fn run(arguments: &SearchArguments, about: About, subject: &mut dyn Subject)
     };
     let searched = search(subject, &request, &progress).map_err(|error| match error {
         NotMade::NoCase => Refusal::request(
-            "--search: the program declares no filter of which there are problems, or none of --kind or --problem",
+            "--search: there are no problems for the filters that the program declares, or none that match --kind or --problem",
         ),
         error => Refusal::request(error),
     })?;
@@ -109,7 +109,7 @@ fn status(searched: &Searched) -> u8 {
     }
 }
 
-/// The command that checks what was found again.
+/// The command that checks the found problem again.
 fn again(file: &Path, command: &[String]) -> String {
     let words: Vec<String> = command.iter().map(|word| quoted(word)).collect();
     format!(

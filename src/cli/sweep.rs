@@ -1,6 +1,6 @@
-//! `immaculate reproduce sustika2015 --sweep`: scenario 3 of that paper, 280 settings of what the filters take the noise to be.
+//! `immaculate reproduce sustika2015 --sweep`: scenario 3 of that paper, with 280 settings of the noise that the filters assume.
 //!
-//! After this file the reader knows which files a sweep writes: its points as CSV and as JSON, and two figures.
+//! A sweep writes its points as CSV and as JSON, and two figures.
 
 use super::progress::bar;
 use super::{Refusal, json_text, make_directory, write_file};
@@ -12,7 +12,7 @@ use immaculate::report::fit_error;
 use serde_json::json;
 use std::path::Path;
 
-/// The sweep under some choices, with its files in a directory if there is one; the text, or JSON, of all its points.
+/// The sweep under some choices: the text or JSON of all its points, with files if there is a directory.
 pub fn run(choices: &Choices, effort: Effort, directory: Option<&Path>, is_json: bool) -> Result<String, Refusal> {
     let sweep = Sweep::new(choices, effort.runs.unwrap_or(RUNS), effort.seed).map_err(Refusal::request)?;
     let bar = bar(

@@ -1,6 +1,6 @@
 //! `immaculate trace`: runs a problem file and prints every value of every step.
 //!
-//! After this file the reader knows the forms of a trace: text, JSON and the long CSV, of doubles or of proven digits, and literals.
+//! A trace is printed as text, JSON or long CSV, in doubles or in proven digits, or as literals of a language.
 
 use super::{Done, Refusal, json_text, read_file};
 use clap::Args;
@@ -20,7 +20,7 @@ use std::path::PathBuf;
 pub struct TraceArguments {
     /// The problem file (`-` for standard input), or the id of a published case
     file: PathBuf,
-    /// Print so many certified digits of every value, proven by enclosure, instead of doubles
+    /// Print N certified digits of every value, proven by enclosure, instead of doubles
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     digits: Option<u32>,
     /// Print JSON instead of text
@@ -32,7 +32,7 @@ pub struct TraceArguments {
     /// Print certified doubles as literals of a language, for a unit test
     #[arg(long = "as", value_name = "LANGUAGE", value_enum, conflicts_with_all = ["digits", "json", "csv"])]
     language: Option<Language>,
-    /// Compute by a convention that is not the papers', as a program declares it: `first_step=predicted`, say; may be given again
+    /// Follow another convention than the papers, such as `first_step=predicted`; may be repeated
     #[arg(long = "convention", value_name = "KEY=VALUE")]
     conventions: Vec<String>,
 }
@@ -87,8 +87,8 @@ fn declared(conventions: &[String]) -> Result<Vec<&'static str>, Refusal> {
     Ok(variants)
 }
 
-/// The run in doubles. One that stops before its end is shown as far as it came, with what stopped it as a complaint; so is one whose
-/// digits rounding has eaten.
+/// The run in doubles. A run that stops early is shown as far as it came, with the reason as a complaint; so is a run that loses all its
+/// digits to rounding.
 fn in_doubles(arguments: &TraceArguments, problem: &ProblemFile) -> Result<Done, Invalid> {
     let (values, failure) = run_in_doubles(problem)?;
     let failure = failure.or_else(|| lost_covariance(problem, &values));

@@ -1,6 +1,4 @@
-//! `immaculate variants`: the catalogue of what can be done otherwise.
-//!
-//! After this file the reader knows how the catalogue is shown.
+//! `immaculate variants`: the catalogue of mistakes, conventions and forms.
 
 use super::{Done, Refusal, json_text};
 use clap::Args;
@@ -10,7 +8,7 @@ use serde_json::json;
 
 #[derive(Args)]
 pub struct VariantsArguments {
-    /// One variant in full; all in a table when none is given
+    /// The variant to show in full; without it, a table of all
     id: Option<String>,
     /// Print JSON instead of text
     #[arg(long)]

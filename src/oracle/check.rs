@@ -1,7 +1,6 @@
 //! The check of a program under test over the published cases.
 //!
-//! After this file the reader knows how a verdict over all cases comes about: the echo first, then each case that the program has the
-//! filter for, then, if anything is faulty, the search for what was done.
+//! First comes the echo, then each case for the program's kinds of filter. If anything is faulty, the diagnosis looks for the cause.
 
 use super::again::ask_again;
 use super::behaviour::{NotAsked, Unasked};
@@ -63,7 +62,7 @@ pub enum NotMade {
         known: String,
     },
     /// A kind of filter, or a format, that is not known.
-    #[error("the program declares the {what} {name:?}, and there is none of this name{}", .nearest.as_ref().map_or_else(String::new, |near| format!("; the nearest is `{near}`")))]
+    #[error("the program declares the {what} {name:?}, which does not exist{}", .nearest.as_ref().map_or_else(String::new, |near| format!("; the nearest is `{near}`")))]
     Unknown {
         /// Kind or format.
         what: &'static str,
@@ -73,7 +72,7 @@ pub enum NotMade {
         nearest: Option<String>,
     },
     /// The selection is empty.
-    #[error("no case has what was selected")]
+    #[error("no case matches the selection")]
     NoCase,
     /// A problem that cannot be set up.
     #[error("{0}")]
@@ -87,7 +86,7 @@ pub enum NotMade {
         invalid: Invalid,
     },
     /// Two problems have the same id.
-    #[error("two problems have the id `{0}`; answers could not be told apart")]
+    #[error("two problems have the id `{0}`, so their answers could not be distinguished")]
     SameId(String),
     /// The subject was interrupted.
     #[error("the check was interrupted")]
@@ -138,7 +137,7 @@ pub fn convention(key: &str, value: &str) -> Result<Option<&'static str>, NotMad
     })
 }
 
-/// Checks a program on the selected cases; `progress` is told of each case that is done.
+/// Checks a program on the selected cases; `progress` is called after each case.
 ///
 /// Example: this crate's own filter, with a mistake in it that is to be found: the spread of the means is left out.
 ///
@@ -228,7 +227,7 @@ pub fn check_problems(
 pub(super) enum Question<'a> {
     /// A published case.
     Published(&'a Case),
-    /// A problem of the user, certified to so many steps.
+    /// A problem of the user, certified up to a step.
     Own {
         problem: &'a ProblemFile,
         expected: Expected,

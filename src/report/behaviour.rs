@@ -1,6 +1,6 @@
-//! What a program was asked and what not, filter by filter.
+//! Which situations a program was asked to handle, filter by filter.
 //!
-//! After this file the reader knows the table of behaviours in a verdict, and the words for a grade.
+//! It prints the table of situations in a verdict, and the words for each grade.
 
 use super::{table, wrapped};
 use crate::oracle::behaviour::{Behaviour, Grade, Unasked};
@@ -23,9 +23,9 @@ pub(super) fn in_a_word(grade: &Grade) -> &'static str {
 /// Why there is no other grade, if there is none.
 pub(super) fn why(grade: &Grade) -> Option<&'static str> {
     match grade {
-        Grade::NotAsked(Unasked::Kind) => Some("the cases have filters that the program does not have"),
-        Grade::NotAsked(Unasked::Format) => Some("the cases have a format that the program does not declare"),
-        Grade::NotAsked(Unasked::Validation) => Some("the program leaves bad input to its caller"),
+        Grade::NotAsked(Unasked::Kind) => Some("the cases need filters that the program does not have"),
+        Grade::NotAsked(Unasked::Format) => Some("the cases are in a format that the program does not declare"),
+        Grade::NotAsked(Unasked::Validation) => Some("the program leaves input checks to its caller"),
         Grade::NotAsked(Unasked::Selection) => Some("no such case was selected"),
         Grade::Impossible(why) => Some(why),
         _ => None,
@@ -43,13 +43,13 @@ pub(super) fn cell(grade: &Grade) -> String {
     }
 }
 
-/// A row a behaviour and a column a family of filters, and why something was not asked. Nothing of problems that are not published.
+/// One row per behaviour, one column per family of filters, and why something was not asked. Empty for unpublished problems.
 pub(super) fn behaviours(report: &Report) -> String {
     let grades = report.grades();
     if grades.is_empty() {
         return String::new();
     }
-    let header: Vec<&str> = std::iter::once("what a filter meets")
+    let header: Vec<&str> = std::iter::once("situation")
         .chain(grades.iter().map(|(family, _)| *family))
         .collect();
     let mut table = table(&header);
@@ -68,7 +68,7 @@ pub(super) fn behaviours(report: &Report) -> String {
     text
 }
 
-/// What was not asked and why, a sentence a reason.
+/// What was not asked: one sentence per reason.
 pub(super) fn open_questions(grades: &[(&'static str, Vec<(Behaviour, Grade)>)]) -> Vec<String> {
     let mut open: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
     for (behaviour, grade) in grades.iter().flat_map(|(_, of_family)| of_family) {
@@ -79,6 +79,6 @@ pub(super) fn open_questions(grades: &[(&'static str, Vec<(Behaviour, Grade)>)])
             }
         }
     }
-    let sentence = |(why, names): (&str, Vec<&str>)| format!("Not asked, since {why}: {}.", names.join(", "));
+    let sentence = |(why, names): (&str, Vec<&str>)| format!("Not asked, because {why}: {}.", names.join(", "));
     open.into_iter().map(sentence).collect()
 }

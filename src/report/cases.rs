@@ -1,6 +1,6 @@
 //! The published cases for people.
 //!
-//! After this file the reader knows how cases are listed and shown, and what is said of proving them again.
+//! Cases are listed, shown, and reported after they have been proven again.
 
 use super::{never_broken, table, wrapped};
 use crate::oracle::case::{BadCase, Case};
@@ -13,7 +13,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::time::Duration;
 
-/// One line a case, the filters, and the flags.
+/// One line per case, then the filters and the flags.
 pub fn list(cases: &[&Case]) -> String {
     let mut table = table(&["case", "n", "m", "modes", "steps", "filter", "flags"]);
     for column in table.column_iter_mut().skip(5) {
@@ -61,10 +61,10 @@ pub fn show(case: &Case) -> String {
     text
 }
 
-/// A case that was verified, with what came of it and the time it took.
+/// A case that was verified, with the result and the time it took.
 pub type Verified<'a> = (&'a &'a Case, Result<Option<Certified>, BadCase>, Duration);
 
-/// What became of proving cases again.
+/// The result of proving cases again.
 pub fn verified(outcomes: &[Verified]) -> String {
     let mut table = table(&["case", "steps", "values", "bits", "digits left", "time (s)"]);
     let mut wrong = String::new();

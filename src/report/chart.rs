@@ -1,8 +1,8 @@
-//! What all figures have in common: a title, a legend above the panels, panels with axes, lines with bands, cells.
+//! The common parts of all figures: a title, a legend above the panels, panels with axes, lines with bands, cells.
 //!
-//! After this file the reader knows how a figure is put together and why it can be read on a telephone: it is [`WIDTH`] pixels wide and its
-//! letters are large for that. Lines that coincide are still seen: each is drawn thinner over the one before and has marks of its own shape
-//! at places of its own. Where two points fall on one pixel, one is drawn.
+//! A figure can be read on a telephone: it is [`WIDTH`] pixels wide, with letters that are large for that width. Coinciding lines stay
+//! visible: each is drawn thinner than the one below it and has markers of its own shape at its own places. If two points fall on one
+//! pixel, one is drawn.
 
 use super::broken;
 use super::palette::{FILTERS, GRID, INK, PAPER, SHADE};
@@ -48,7 +48,7 @@ pub(super) struct Caption {
     pub title: String,
     /// Below it, what a reader has to know: runs, bands, shades.
     pub note: String,
-    /// A sentence or two for who cannot see the figure.
+    /// A sentence or two for readers who cannot see the figure.
     pub says: String,
     /// Whether it is made of cells, between which no gaps may be left.
     pub has_cells: bool,
@@ -62,7 +62,7 @@ pub(super) struct Look {
     shape: usize,
 }
 
-/// The looks of so many lines: each thinner than the one before.
+/// The looks of a number of lines: each thinner than the one before.
 pub(super) fn looks(count: usize) -> Vec<Look> {
     let widths = (0..count).rev().map(|below| 2 + 2 * u32::try_from(below).unwrap_or(0));
     let colours = FILTERS.iter().cycle().enumerate();
@@ -225,7 +225,7 @@ fn draw_marker(area: &Area, (x, y): (i32, i32), colour: RGBColor, shape: usize) 
     Ok(())
 }
 
-/// Title and description for who cannot see the figure, and for the tooltip of a browser.
+/// Title and description for readers who cannot see the figure, and for the browser's tooltip.
 fn with_words(svg: &str, caption: &Caption) -> String {
     let Caption { name, title, says, .. } = caption;
     let edges = if caption.has_cells {

@@ -1,7 +1,6 @@
-//! The verdict on a program under test, for people and as JSON.
+//! The verdict on a program under test, as text.
 //!
-//! After this file the reader knows how a verdict looks: the cases, the faults by equation, what was done, and last the sentence that
-//! matters.
+//! A verdict lists the cases, the faults by equation and their causes, and ends with one sentence that sums it up.
 
 use super::behaviour::behaviours;
 use super::fault::faulty_equations;
@@ -48,7 +47,7 @@ pub(super) fn words(outcome: &Outcome) -> &'static str {
     }
 }
 
-/// The reason that an outcome carries.
+/// The reason for an outcome.
 pub(super) fn reason(case: &CaseReport) -> Option<String> {
     match &case.outcome {
         Outcome::Rejected {
@@ -62,12 +61,12 @@ pub(super) fn reason(case: &CaseReport) -> Option<String> {
             "the program stopped before the end: {}",
             case.stopped.as_ref()?
         )),
-        Outcome::NotRejected => Some("the problem is wrong and was run all the same".into()),
+        Outcome::NotRejected => Some("the problem is invalid, but the program ran it".into()),
         _ => None,
     }
 }
 
-/// One line a case: what was judged and to how many digits.
+/// One line per case: how much was judged, and to how many digits.
 fn cases(report: &Report) -> String {
     let mut table = table(&["case", "verdict", "judged", "digits"]);
     let rejects = report.rejects_anything();
@@ -85,8 +84,8 @@ fn cases(report: &Report) -> String {
     if !rejects {
         let run = report.cases.iter().filter(|case| case.outcome == Outcome::NotRejected);
         let sentence = format!(
-            "NOT REJECTED: {} problems that must be rejected, all that were asked, were run all the same. A program that leaves the checking \
-             of its input to its caller says so: `\"validates\": false` in the ready message.",
+            "NOT REJECTED: the program ran all {} problems that it should have rejected. If it leaves input checks to its caller, declare \
+             `\"validates\": false` in the ready message.",
             run.count()
         );
         text.push_str(&wrapped(&sentence, "  "));
@@ -105,7 +104,7 @@ fn cases(report: &Report) -> String {
     text
 }
 
-/// The faults by equation: how many, and the first in full.
+/// The faults by equation: their number, and the first in full.
 fn faults(report: &Report) -> String {
     let mut text = String::new();
     for fault in faulty_equations(report) {
@@ -122,7 +121,7 @@ fn faults(report: &Report) -> String {
     text
 }
 
-/// Steps whose equations have no answer on the program's own values, the first of each case in a sentence.
+/// Steps whose equations cannot be evaluated on the program's own values: one sentence for the first of each case.
 pub(super) fn without_answer(report: &Report) -> Vec<String> {
     let wrong = report.cases.iter().filter(|case| case.outcome.is_wrong());
     wrong
@@ -135,12 +134,12 @@ fn failures(report: &Report) -> String {
     if failed.is_empty() {
         return String::new();
     }
-    let mut text = String::from("\nON THE PROGRAM'S OWN VALUES the equations have no answer here:\n");
+    let mut text = String::from("\nON THE PROGRAM'S OWN VALUES these equations cannot be evaluated:\n");
     for failure in failed.iter().take(3) {
         text.push_str(&wrapped(failure, "  "));
     }
     if failed.len() > 3 {
-        let _ = writeln!(text, "  And so it is in {} more of the cases.", failed.len() - 3);
+        let _ = writeln!(text, "  The same holds in {} more of the cases.", failed.len() - 3);
     }
     text
 }
@@ -158,7 +157,7 @@ fn one(variant: &Variant) -> String {
     format!("{}  ({}; {})", variant.about, variant.id, kind(variant))
 }
 
-const EXPLAINED: &str = "every value that was shown is explained by the program's own values before it.";
+const EXPLAINED: &str = "every shown value is explained by the program's own earlier values.";
 
 pub(super) fn diagnosis(diagnosis: &Diagnosis) -> String {
     let mut text = String::new();
@@ -171,7 +170,7 @@ pub(super) fn diagnosis(diagnosis: &Diagnosis) -> String {
             }
             let _ = writeln!(text, "  With this, {EXPLAINED}");
             if variants.len() > 1 {
-                text.push_str("  These cannot be told apart by what was shown.\n");
+                text.push_str("  The shown values cannot distinguish them.\n");
             }
         }
         Diagnosis::Several(members) => {
@@ -196,7 +195,7 @@ pub(super) fn diagnosis(diagnosis: &Diagnosis) -> String {
             if pairs.len() > 1 {
                 let _ = writeln!(
                     text,
-                    "  {} pairs do, and cannot be told apart by what was shown.",
+                    "  {} pairs do; the shown values cannot distinguish them.",
                     pairs.len()
                 );
             }
@@ -221,20 +220,22 @@ pub(super) fn diagnosis(diagnosis: &Diagnosis) -> String {
     text
 }
 
-/// What is said where no one thing explains all.
+/// The diagnosis when no single entry explains every value.
 fn in_parts(parts: &[Share], unexplained: &[String], formulas: &ComputedFormulas, of: usize, pairs: bool) -> String {
     let mut text = String::from(match (unexplained.is_empty(), formulas.is_complete) {
         (true, _) => "\nMOST LIKELY, IN DIFFERENT CASES\n",
-        (false, true) => "\nCAUSE  What no entry of the catalogue explains, the formulas below do.\n",
-        (false, false) => "\nCAUSE  Nothing in the catalogue, alone or with others, explains every value.\n",
+        (false, true) => "\nCAUSE  The formulas below explain what no entry of the catalogue explains.\n",
+        (false, false) => "\nCAUSE  No entry of the catalogue, alone or with others, explains every value.\n",
     });
     if !pairs && !unexplained.is_empty() && !formulas.is_complete {
-        text.push_str("  Of pairs in the same equation not all were tried: the run is long until its first fault.\n");
+        text.push_str(
+            "  Not all pairs in the same equation were tried, because the first fault comes late in the run.\n",
+        );
     }
     for (index, part) in parts.iter().enumerate() {
         let _ = match index {
             0 => writeln!(text, "  This explains {} of the {of} cases with a fault:", part.cases),
-            _ => writeln!(text, "  And this, alone or with the others, {} more:", part.cases),
+            _ => writeln!(text, "  This, alone or with the others, explains {} more:", part.cases),
         };
         for (index, variant) in part.variants.iter().enumerate() {
             let or = if index > 0 { "or " } else { "" };
@@ -245,7 +246,7 @@ fn in_parts(parts: &[Share], unexplained: &[String], formulas: &ComputedFormulas
         let named: Vec<&str> = unexplained.iter().take(5).map(String::as_str).collect();
         let more = if unexplained.len() > named.len() { ", …" } else { "" };
         let by_it = if formulas.is_complete {
-            "The catalogue leaves"
+            "Not explained by the catalogue"
         } else {
             "Unexplained"
         };
@@ -265,7 +266,7 @@ fn coverage(report: &Report) -> String {
     text
 }
 
-/// The sentence that matters.
+/// The verdict in one sentence.
 fn summary(report: &Report) -> String {
     format!("\n{}", wrapped(&verdict::sentence(report), ""))
 }

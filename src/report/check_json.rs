@@ -1,6 +1,6 @@
 //! The verdict on a program under test as JSON.
 //!
-//! After this file the reader knows the same as from the text, for programs: every case, and every value that is not simply right.
+//! It says the same as the text, for programs: every case, and every value that is not simply right.
 
 use super::behaviour::{in_a_word, why};
 use super::check::{reason, words};

@@ -1,7 +1,7 @@
-//! Where a converted measurement can be trusted: a rule as a table, and its reason as a picture.
+//! Where a converted measurement can be trusted: the rule as a table, and its reason as a picture.
 //!
-//! After this file the reader knows up to which nonlinearity ρ = r σ_θ²/σ_r each conversion's covariance is right, what the 0.4 of the
-//! textbook means, and on which side of it the radar of sustika2015 is. The numbers are the closed forms of
+//! The table shows up to which nonlinearity ρ = r σ_θ²/σ_r each conversion's covariance is right, the meaning of the textbook's 0.4, and
+//! on which side of it the radar of sustika2015 lies. The numbers are the closed forms of
 //! [`conversion_validity`](crate::model::conversion_validity).
 
 use super::chart::{Area, Axis, Caption, Drawn, Key, Line, NotDrawn, draw_lines, figure as whole, looks, panel};
@@ -21,7 +21,7 @@ const TOLERANCE: f64 = 0.1;
 const SMALL_BIAS: f64 = RULE / 2.0;
 /// The rule of thumb: Bar-Shalom, Li and Kirubarajan 2001, section 10.4.3.
 const RULE: f64 = 0.4;
-/// Nearer than so many σ_r, the noise of the range is no longer small against it, and nothing is judged.
+/// Nearer than this multiple of σ_r, the noise of the range is no longer small against the range, and nothing is judged.
 const NEAREST: f64 = 10.0;
 /// Beyond this no radar is.
 const FARTHEST: f64 = 100.0;

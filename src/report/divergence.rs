@@ -1,7 +1,6 @@
-//! What makes the unscented filter of sustika2015 diverge, as a table and a sentence.
+//! The cause of the divergence of sustika2015's unscented filter, as a table and a sentence.
 //!
-//! After this file the reader can see both paired differences, with the bearings wrapped and never wrapped, beside the counts of runs that
-//! diverge.
+//! It shows both paired differences, with bearings wrapped and never wrapped, beside the counts of divergent runs.
 
 use super::{standard_errors, table, wrapped};
 use crate::paper::sustika2015::DIVERGENT_FIT_ERROR;

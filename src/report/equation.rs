@@ -1,6 +1,4 @@
-//! An equation for people: what the book says of it, in a line and in full.
-//!
-//! After this file the reader knows how an equation is printed, with its code, and what can be run next.
+//! An equation for people: its entry in the book, in one line and in full, with its code and the commands to run next.
 
 use super::{never_broken, table, words_whole, wrapped};
 use crate::book::doc::PartKind;
@@ -10,7 +8,7 @@ use comfy_table::CellAlignment;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// One line an equation.
+/// One line per equation.
 pub fn table_of(entries: &[&Entry]) -> String {
     let mut table = table(&["equation", "status", "what", "code"]);
     for column in table.column_iter_mut() {
@@ -28,11 +26,11 @@ pub fn table_of(entries: &[&Entry]) -> String {
     for column in [0, 1, 3] {
         words_whole(&mut table, column);
     }
-    let next = "`immaculate equation zhu2016 56` shows one in full; so do the name of a value and of a function";
+    let next = "`immaculate equation zhu2016 56` shows one in full; the name of a value or a function works too";
     format!("{table}\n{} equations; {next}\n", entries.len())
 }
 
-/// An equation with all that is known of it.
+/// An equation with everything that the book has about it.
 pub fn in_full(entry: &Entry) -> String {
     let equation = entry.equation;
     let mut text = format!("{}  {}\n", entry.reference, entry.title());
@@ -60,7 +58,7 @@ pub fn status(status: &str) -> &'static str {
     match status {
         "as-printed" => "The paper prints this form.",
         "corrected" => "Corrected: the paper prints another form.",
-        _ => "Reconstructed: the paper needs it and does not print it, or the available copy has lost it.",
+        _ => "Reconstructed: the paper needs it but does not print it, or the available copy has lost it.",
     }
 }
 
@@ -119,7 +117,7 @@ fn tests(entry: &Entry) -> String {
     text
 }
 
-/// The mistakes with the cases that catch them, or why there are none.
+/// The mistakes and the cases that catch them, or why there are none.
 fn mistakes(entry: &Entry) -> String {
     if let Some(reason) = &entry.equation.outside {
         return format!("\nOUTSIDE A STEP\n{}", wrapped(reason, "  "));
@@ -151,7 +149,7 @@ fn next(entry: &Entry) -> String {
         );
         add(
             format!("immaculate cases show {}", variant.case),
-            "the case that is meant for it",
+            "the case meant to catch it",
         );
         add(
             format!("immaculate check --case {} -- COMMAND", variant.case),
@@ -167,7 +165,7 @@ fn next(entry: &Entry) -> String {
     }
     add(
         format!("immaculate claims {}", entry.paper.key()),
-        "what the paper claims, judged",
+        "the paper's claims, judged",
     );
     text
 }

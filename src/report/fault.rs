@@ -1,6 +1,6 @@
-//! The faults of a verdict, equation by equation: the first in a sentence, and how many more there are.
+//! The faults of a verdict, equation by equation: the first in a sentence, and the number of others.
 //!
-//! After this file the reader knows what every form of a verdict says of a fault: the text, the page, the summary and the test report.
+//! The text, the HTML page, the Markdown summary and the test report all use these sentences.
 
 use super::check::number;
 use crate::imm::Quantity;
@@ -72,7 +72,7 @@ impl FaultyEquation<'_> {
         }
         let names: Vec<&str> = self.first.hidden.iter().map(|quantity| quantity.name()).collect();
         Some(format!(
-            "The fault is in this equation or in one before it that is not shown: {}.",
+            "The fault is in this equation or in an earlier one that is not shown: {}.",
             names.join(", ")
         ))
     }
@@ -118,7 +118,7 @@ fn first_fault(case: &CaseReport, judged: &Judged, precision: Precision) -> Stri
     };
     if judged.finding == Finding::NotFinite {
         return format!(
-            "{place}: the value is not finite; from the program's own values it is {}.",
+            "{place}: the value is not finite; the program's own values give {}.",
             own.expected
         );
     }
@@ -128,7 +128,7 @@ fn first_fault(case: &CaseReport, judged: &Judged, precision: Precision) -> Stri
         "infinitely many times".into()
     };
     format!(
-        "{place}{} is {}, and should be {} by the program's own values before it: off by {:.2e}{}, {noise} the rounding noise of {precision}.",
+        "{place}{} is {}, and should be {}, given the program's own earlier values: off by {:.2e}{}, {noise} the rounding noise of {precision}.",
         entry(judged, own.index, case),
         number(own.shown),
         number(own.expected),
@@ -137,11 +137,11 @@ fn first_fault(case: &CaseReport, judged: &Judged, precision: Precision) -> Stri
     )
 }
 
-/// In what a quantity's errors are counted, after a blank; nothing where they are counted in themselves.
+/// The unit of a quantity's errors, after a blank; empty if it has none.
 pub(super) fn unit(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::PredictedModeProbabilities | Quantity::MixingProbabilities | Quantity::ModeProbabilities => {
-            " of itself"
+            " of its own size"
         }
         Quantity::LogLikelihood | Quantity::Nis | Quantity::Nees => "",
         Quantity::Gain => " √(Pᵢᵢ/Sⱼⱼ)",

@@ -1,8 +1,8 @@
 //! The papers' figures of averages: errors and mode probabilities over time, as SVG.
 //!
-//! After this file the reader can look at what the tables average: when the target turns (shaded), how the errors rise, how fast the mode
-//! probabilities follow, and how far a curve would move if the runs were drawn again: the band around it is two standard errors to either
-//! side. What is within a pixel of something else is said to be.
+//! A figure shows when the target turns (shaded), how the errors rise, how fast the mode probabilities follow, and how far a curve would
+//! move if the runs were drawn again: the band is two standard errors wide on either side. Lines within a pixel of each other are
+//! mentioned.
 
 use super::chart::{
     Area, Axis, Caption, Drawn, Key, Line, Look, NotDrawn, draw_lines, figure, looks, panel, stretches,
@@ -97,7 +97,7 @@ fn panel_of_errors(reproduction: &Reproduction, quantity: ErrorQuantity) -> Pane
     }
 }
 
-/// Mean mode probabilities over time, one panel a mode, shaded while it is the true one.
+/// Mean mode probabilities over time, one panel per mode, shaded while it is the true one.
 ///
 /// # Errors
 ///
@@ -195,7 +195,7 @@ pub(super) fn what_is_shaded(reproduction: &Reproduction) -> &'static str {
     }
 }
 
-/// The runs, the band, the shade, and what cannot be told apart.
+/// The runs, the band, the shade, and the filters that cannot be distinguished.
 fn note(reproduction: &Reproduction, panels: &[Panel], shaded: &str) -> String {
     let mut note = format!(
         "{} runs, seed {}; bands: ± {BAND} standard errors. {shaded}",

@@ -1,8 +1,8 @@
-//! The sweep of sustika2015 for people: what it says in a table, and figures 2 and 4 of the paper.
+//! The sweep of sustika2015: its results as a table, and figures 2 and 4 of the paper.
 //!
-//! After this file the reader can see how the percentage fit errors of the filters change with the noise that they take for granted, and
-//! whether it is the noise or the cut of the bearings at ±π that makes the unscented filter diverge. A line is a mean over runs, the band
-//! around it two standard errors to either side; where a filter diverges, the axis is logarithmic.
+//! The figures show how the percentage fit errors change with the noise that the filters assume, and whether the noise or the cut of the
+//! bearings at ±π makes the unscented filter diverge. A line is a mean over runs; the band is two standard errors wide on either side. If
+//! a filter diverges, the axis is logarithmic.
 
 use super::chart::{
     Area, Axis, Caption, Drawn, Key, Line, Look, NotDrawn, draw_lines, draw_path, figure, looks, panel, plain,

@@ -1,4 +1,4 @@
-//! The formulas that a program computed in place of right ones, for people and as JSON.
+//! The wrong formulas that a program computed, for people and as JSON.
 
 use super::wrapped;
 use crate::oracle::formula::{ComputedFormula, ComputedFormulas, Explanation, short};
@@ -19,7 +19,7 @@ fn one(found: &ComputedFormula) -> String {
     text.push_str(&wrapped(&found.computed, "    "));
     let _ = writeln!(
         text,
-        "  gives what is shown in {} of {} faulty values, and should be",
+        "  gives the shown value in {} of {} faulty values, and should be",
         found.explains, found.of
     );
     text.push_str(&wrapped(&found.right, "    "));
@@ -41,7 +41,7 @@ pub(super) fn json(formulas: &ComputedFormulas) -> Value {
     json!({ "found": formulas.found.iter().map(of_one).collect::<Vec<_>>(), "complete": formulas.is_complete })
 }
 
-/// The equation, what it is in numbers, and the term that is amiss if one is.
+/// The equation, the equation in numbers, and the wrong term if there is one.
 pub(super) fn explained(explanation: &Explanation) -> String {
     in_numbers(explanation)
         .iter()
@@ -49,7 +49,7 @@ pub(super) fn explained(explanation: &Explanation) -> String {
         .collect()
 }
 
-/// The same as two lines: the sum, and what is shown in its place.
+/// The same as two lines: the sum, and the value shown instead.
 pub(super) fn in_numbers(explanation: &Explanation) -> [String; 2] {
     let Explanation {
         equation,

@@ -1,7 +1,6 @@
-//! A trace as literals of a programming language, to be pasted into a unit test.
+//! A trace as literals of a programming language, to paste into a unit test.
 //!
-//! After this file the reader knows how the same numbers look in each language: every number is the shortest decimal that is read as the
-//! same double again.
+//! Every number is the shortest decimal that reads as the same double.
 
 use crate::imm::Quantity;
 use crate::oracle::trace::Trace;

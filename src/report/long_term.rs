@@ -1,7 +1,7 @@
-//! Figures 1 and 2 of derbez2000: by how many per cent the predicted long-term error is off, as heat maps in SVG.
+//! Figures 1 and 2 of derbez2000: the error of the predicted long-term error in per cent, as heat maps in SVG.
 //!
-//! After this file the reader can see where an algorithm is right (pale), predicts too much (red) or too little (blue), and that with the
-//! manoeuvre beginning with the run no form of it is right where constant velocity has the greater noise.
+//! An algorithm is right where the map is pale; it predicts too much (red) or too little (blue). If the manoeuvre begins with the run, no
+//! form of it is right where constant velocity has the greater noise.
 
 use super::chart::{Area, Axis, Caption, Drawn, Key, NotDrawn, draw_cells, edges, figure, panel};
 use super::palette::{FILTERS, MEASURED, PAPER};
@@ -24,7 +24,7 @@ pub struct Panel {
 const PANEL_HEIGHT: u32 = 270;
 /// Where the colours end, %; beyond it a prediction is wrong, and by how much is no longer seen.
 const FULL: f64 = 100.0;
-/// Colours between nothing and full: more are not told apart, and neighbours of one colour are drawn as one.
+/// The number of colour steps: more could not be distinguished, and neighbours of one colour are drawn as one.
 const SHADES: f64 = 10.0;
 const TOO_LITTLE: RGBColor = FILTERS[0];
 const TOO_MUCH: RGBColor = FILTERS[1];
@@ -60,7 +60,7 @@ pub fn figures_1_and_2(seed: u64) -> Result<String, NotDrawn> {
     heat_maps(&panels, figures.len())
 }
 
-/// The panels, so many in a row, under one scale.
+/// The panels, several in a row, under one scale.
 ///
 /// # Errors
 ///

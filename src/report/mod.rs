@@ -1,7 +1,6 @@
-//! What is printed: tables and figures for people.
+//! Output for people: tables and figures.
 //!
-//! After this folder the reader knows how each command's answer looks. The same answers are written as JSON by serialising the values
-//! themselves; nothing is computed here.
+//! Each command's answer is formatted here. The JSON output serialises the values themselves; nothing is computed here.
 //!
 //! - [`rule`]: points and weights; [`trace`]: a run step by step; [`cases`], [`variants`], [`claims`]: the lists of what there is;
 //! - [`reproduction`], [`published`], [`figure`], [`path`], [`long_term`], [`fit_error`], [`divergence`]: the papers' tables and figures,
@@ -133,7 +132,7 @@ fn wrapped(paragraph: &str, indent: &str) -> String {
     text
 }
 
-/// A paragraph broken at words, into lines of so many characters at most; one line at least.
+/// A paragraph broken at words into lines of a maximum length; at least one line.
 fn broken(paragraph: &str, width: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in paragraph.split_whitespace() {

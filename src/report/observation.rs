@@ -1,4 +1,4 @@
-//! What is seen in the answers as a whole, in a sentence each and as JSON.
+//! Observations about the answers as a whole, as sentences and as JSON.
 
 use super::check::number;
 use super::wrapped;
@@ -13,7 +13,7 @@ pub(super) fn observations(observations: &[Observation]) -> String {
     observations.iter().map(one).collect()
 }
 
-/// Those that alone make a verdict wrong, a sentence each.
+/// One sentence for each observation that alone makes a verdict wrong.
 pub(super) fn sentences(observations: &[Observation]) -> Vec<String> {
     let wrong = observations.iter().filter(|observation| observation.is_wrong());
     wrong.map(sentence).collect()
@@ -28,16 +28,16 @@ pub(super) fn sentence(observation: &Observation) -> String {
             is_rounding,
         } => differ(id, difference.as_ref(), *is_rounding),
         Observation::RightAlone { ids } => format!(
-            "{}: right when asked alone, in a program started anew: something is kept between problems, or chance decides.",
+            "{}: right when asked alone, in a new process: something is kept between problems, or chance decides.",
             ids.join(", ")
         ),
         Observation::FewDigits { digits } => few_digits(*digits),
         Observation::FewDecimals { decimals } => format!(
-            "No number that is shown has more than {decimals} digits behind the point, whatever its size. Print 17 significant digits \
+            "No shown number has more than {decimals} digits after the decimal point, whatever its size. Print 17 significant digits \
              (`%.17g`)."
         ),
         Observation::SinglePrecision => {
-            "Every number that is shown is one of single precision, and a finer one was declared. Compute and \
+            "Every shown number has only single precision, but the program declared a higher one. Compute and \
              print in double precision, or declare `\"precision\": \"single\"`."
                 .to_owned()
         }
@@ -48,7 +48,7 @@ pub(super) fn sentence(observation: &Observation) -> String {
                 |step| format!("the values of step {step}"),
             );
             format!(
-                "{id}: all steps show {of_step}. Is one record filled again in every step, and listed once for each?"
+                "{id}: all steps show {of_step}. Does the program list one record several times and overwrite it in every step?"
             )
         }
         Observation::SymmetryLost {
@@ -64,12 +64,12 @@ pub(super) fn sentence(observation: &Observation) -> String {
                 Triangle::Lower => "lower",
             };
             format!(
-                "Only the {shown} triangle is shown, and zeros beside it, of {}. A covariance is shown with both.",
+                "Only the {shown} triangle of {} is shown; the other one is zero. Show both triangles of a covariance.",
                 names.join(", ")
             )
         }
         Observation::ShownAs { quantity, way } => {
-            format!("{} is right, and is shown as {way}.", quantity.name())
+            format!("{} is right, but shown as {way}.", quantity.name())
         }
     }
 }
@@ -78,9 +78,9 @@ pub(super) fn sentence(observation: &Observation) -> String {
 fn differ(id: &str, difference: Option<&Discrepancy>, is_rounding: bool) -> String {
     let what = difference.map_or_else(|| "without values".to_owned(), in_words);
     let cause = if is_rounding {
-        "Both are right: rounding alone differs, as in sums whose order is left to chance."
+        "Both are right: only their rounding differs, as in sums whose order varies."
     } else {
-        "It depends on chance (memory that is not set, random numbers, threads), or something is kept between problems."
+        "It depends on chance (uninitialised memory, random numbers, threads), or something is kept between problems."
     };
     format!("{id} answers differently when asked again, in the same process: {what}. {cause}")
 }
@@ -91,9 +91,7 @@ fn rounded(input: SingleInput) -> String {
         SingleInput::Estimates => "The initial estimates were",
         SingleInput::Everything => "The input was",
     };
-    format!(
-        "{what} rounded to single precision before anything was computed: with this every value that was shown is explained."
-    )
+    format!("{what} rounded to single precision before anything was computed. This explains every shown value.")
 }
 
 /// Numbers that are printed short.
@@ -104,7 +102,7 @@ fn few_digits(digits: usize) -> String {
         ""
     };
     format!(
-        "No number that is shown has more than {digits} significant digits. Print 17 digits, or declare \
+        "No shown number has more than {digits} significant digits. Print 17 digits, or declare \
          `\"precision\": {{\"decimal_digits\": {digits}}}`.{single}"
     )
 }
@@ -119,12 +117,12 @@ fn symmetry(ids: &[String], covariance: (Quantity, usize), first: (usize, f64), 
     };
     let others = match ids.len() - 1 {
         0 => String::new(),
-        1 => "; and so in one other case".to_owned(),
-        others => format!("; and so in {others} other cases"),
+        1 => "; the same in one other case".to_owned(),
+        others => format!("; the same in {others} other cases"),
     };
     format!(
         "{}: P loses its symmetry, and rounding grows: max |P − Pᵀ| of {of_mode}{} is {:.0e} √(Pᵢᵢ Pⱼⱼ) at step {} and {:.0e} at step \
-         {}{others}. Make P symmetric after every update, ½(P + Pᵀ), or update it by a form that is: P⁻ − K S Kᵀ.",
+         {}{others}. Make P symmetric after every update, ½(P + Pᵀ), or use a symmetric form: P⁻ − K S Kᵀ.",
         ids[0],
         quantity.name(),
         first.1,
@@ -144,7 +142,7 @@ fn in_words(difference: &Discrepancy) -> String {
     };
     let shown = |value: Option<f64>| value.map_or_else(|| "not shown".to_owned(), number);
     format!(
-        "step {step}, {of_mode}{}, number {} by rows, was {} and is then {}",
+        "step {step}, {of_mode}{}, number {} by rows, was {} and is now {}",
         quantity.name(),
         difference.index + 1,
         shown(difference.first),

@@ -1,8 +1,7 @@
-//! The colours of all figures, in one place, so that a page can exchange them for others on a dark ground.
+//! The colours of all figures, in one place, so that a page can replace them on a dark background.
 //!
-//! After this file the reader knows every colour that an SVG of this program has, and what it is for. The colours of the filters are told
-//! apart by people who see colours differently (Okabe and Ito 2008; the fifth is their sky blue, darkened), and each has a contrast of
-//! three to one at least both on white and on #14171a. What is lighter than a colour is the same colour with an opacity.
+//! People who see colours differently can still distinguish the filters (Okabe and Ito 2008; the fifth is their sky blue, darkened). Each
+//! colour has a contrast of at least three to one on white and on #14171a. Lighter shades are the same colour with an opacity.
 
 use plotters::style::RGBColor;
 

@@ -1,7 +1,7 @@
-//! The first run in the plane, as SVG: where the target was, where it was measured, and where the filters thought it was.
+//! The first run in the plane, as SVG: the target's path, the measurements, and the filters' estimates.
 //!
-//! After this file the reader has seen what the averages are made of: one run, with the same scale along both axes, the manoeuvres
-//! as a wide grey track; and below it the errors of x and of y in this run, where filters that look alike in the plane can be told apart.
+//! It shows what the averages are made of: one run, with the same scale along both axes and the manoeuvres as a wide grey track. Below it
+//! are the errors of x and of y in this run, which separate filters that look alike in the plane.
 
 use super::chart::{
     ABOVE, Area, Axis, BELOW, Caption, Drawn, Key, LEFT, Line, Look, NotDrawn, RIGHT, WIDTH, draw_dots, draw_lines,

@@ -1,7 +1,7 @@
-//! The published tables beside the computed ones, as SVG: one panel a row, one line of it a filter.
+//! The published tables beside the computed ones, as SVG: one panel per row, one line per filter.
 //!
-//! After this file the reader sees at a glance which published figures the papers' own equations give, and which not: the computed one is
-//! a dot with a bar of two standard errors to either side, the published one a diamond.
+//! The figure shows which published values the papers' own equations reproduce. The computed value is a dot with a bar of two standard
+//! errors on either side; the published one is a diamond.
 
 use super::chart::{Area, Axis, Caption, Drawn, Key, NotDrawn, draw_path, figure, label, marker, panel, range_of};
 use super::outcome::outcome;

@@ -1,6 +1,6 @@
-//! A cubature rule for people: points and weights, exact and decimal, with the degree that its exact moments prove.
+//! A cubature rule as text: points and weights, exact and decimal, with the degree that its exact moments prove.
 //!
-//! After this file the reader knows what is listed of a rule, and up to which dimension its degree is proven anew each time.
+//! The degree is proven each time, up to a certain dimension.
 
 use super::table;
 use crate::number::{Field, Surd};

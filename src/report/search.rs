@@ -1,6 +1,6 @@
-//! What a search has found, for people and as JSON.
+//! The result of a search, for people and as JSON.
 //!
-//! After this file the reader knows the two ends of a search: nothing, with all that was judged, or the smallest problem and its verdict.
+//! A search ends in one of two ways: it finds nothing and lists what was judged, or it finds a smallest problem and shows its verdict.
 
 use super::{check, check_json, wrapped};
 use crate::oracle::search::{Found, Searched, count, in_words};
@@ -15,7 +15,7 @@ pub fn text(searched: &Searched, again: &str) -> String {
     };
     if searched.is_echo_wrong() {
         text.push_str(
-            "ECHO WRONG: matrix times vector is not what it should be. Does the program read matrices by columns?\n",
+            "ECHO WRONG: the product of matrix and vector is wrong. Does the program read matrices by columns?\n",
         );
     }
     text
@@ -37,28 +37,28 @@ fn found_text(searched: &Searched, found: &Found, again: &str) -> String {
     let _ = write!(text, "\n{}", check::text(&found.report));
     if found.report_as_drawn.diagnosis != found.report.diagnosis {
         let cause = check::diagnosis(&found.report_as_drawn.diagnosis);
-        let _ = write!(text, "\nAS IT WAS DRAWN the problem tells of the cause:\n{cause}");
+        let _ = write!(text, "\nAS IT WAS DRAWN the problem gives this cause:\n{cause}");
     }
     let _ = write!(text, "\nSEE IT AGAIN\n  {again}\n");
     text
 }
 
-/// How the problem became small, or why it did not.
+/// How far the problem was shrunk, or why it was not.
 fn shrunk(found: &Found) -> String {
     let (before, after) = (in_words(&found.drawn), in_words(&found.problem));
     if !found.report.is_wrong() {
-        return "Asked this problem alone, the program does not fail: its answers depend on what it was asked before. It is written as it was \
-                drawn."
+        return "The program does not fail if it is asked this problem alone: its answers depend on earlier problems. The problem is written as it \
+                was drawn."
             .into();
     }
     let end = match found.shrinking.cut_short {
-        Some(what) => format!("shrinking ended early, its {what} used up: more could perhaps be left out"),
-        None => "nothing more can be left out".to_owned(),
+        Some(what) => format!("shrinking ended early, its {what} used up: perhaps more could be removed"),
+        None => "nothing more can be removed".to_owned(),
     };
     format!("From {before} to {after} in {} tries; {end}.", found.shrinking.tries)
 }
 
-/// What was judged where nothing was found.
+/// What was judged if nothing was found.
 fn nothing(searched: &Searched) -> String {
     if searched.problems == 0 {
         return wrapped(
@@ -102,11 +102,14 @@ fn nothing(searched: &Searched) -> String {
         "",
     );
     text.push_str(&wrapped(&format!("Kinds of filter: {kinds}."), "  "));
-    text.push_str(&wrapped(&format!("They met: {}.", counts(behaviours.collect())), "  "));
+    text.push_str(&wrapped(
+        &format!("Situations: {}.", counts(behaviours.collect())),
+        "  ",
+    ));
     text.push_str(&wrapped(&left_out(searched), "  "));
     for variant in &searched.otherwise {
         let sentence = format!(
-            "Answers are explained by, and were judged by: {}  ({}; {})",
+            "The answers follow, and were judged by: {}  ({}; {})",
             variant.about,
             variant.id,
             variant.kind.name()
@@ -119,9 +122,12 @@ fn nothing(searched: &Searched) -> String {
 fn left_out(searched: &Searched) -> String {
     let parts = [
         (searched.skipped, "skipped by the program"),
-        (searched.not_asked, "not asked, since it had skipped the like"),
+        (searched.not_asked, "not asked, because it had skipped similar ones"),
         (searched.cannot_tell, "drowned in rounding noise"),
-        (searched.dropped, "drawn and dropped, not certified or nearly singular"),
+        (
+            searched.dropped,
+            "drawn and dropped as not certified or nearly singular",
+        ),
     ];
     let said: Vec<String> = parts
         .into_iter()
@@ -129,9 +135,9 @@ fn left_out(searched: &Searched) -> String {
         .map(|(count, what)| format!("{count} {what}"))
         .collect();
     if said.is_empty() {
-        "Every problem that was drawn was judged.".into()
+        "Every drawn problem was judged.".into()
     } else {
-        format!("Besides: {}.", said.join(", "))
+        format!("Not judged: {}.", said.join(", "))
     }
 }
 

@@ -1,6 +1,4 @@
-//! The stability map as a picture.
-//!
-//! After this file the reader can see where two fixed-gain filters are stable however they are mixed: a band around equal noises.
+//! The stability map as a picture: two fixed-gain filters are stable under any mixing in a band around equal noises.
 
 use super::chart::{Axis, Caption, Key, NotDrawn, draw_cells, draw_path, edges, figure, panel};
 use super::palette::{FILTERS, INK, PAPER};

@@ -1,7 +1,7 @@
-//! A trace for people: step by step, every value under its name, with the equations that give it.
+//! A trace as text: step by step, every value under its name, with its equations.
 //!
-//! After this file the reader knows how a step is printed: in the order of the cycle, each value under the name of the file format and with
-//! the printed numbers of its equation, so that a paper can be read beside it.
+//! A step is printed in the order of the cycle. Each value has its name from the file format and the printed numbers of its equation, so
+//! that you can read a paper beside it.
 
 use super::wrapped;
 use crate::imm::Quantity;

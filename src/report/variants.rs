@@ -1,14 +1,11 @@
-//! The catalogue of variants for people.
-//!
-//! After this file the reader knows how a variant is printed: in a line with its kind and equation, and in full with what it does, where
-//! it was found and which case catches it.
+//! The catalogue of variants as text: one line each, or one in full with its effect, its source and the case that catches it.
 
 use super::{never_broken, table, wrapped};
 use crate::oracle::variant::{Kind, Variant};
 use comfy_table::CellAlignment;
 use serde_json::{Value, json};
 
-/// One line a variant.
+/// One line per variant.
 pub fn table_of(variants: &[Variant]) -> String {
     let mut table = table(&["variant", "kind", "equation of", "what you did"]);
     for column in table.column_iter_mut() {

@@ -347,7 +347,7 @@ templates() {
     local all="RIGHT on what was judged: my filter" python="$work/venv/bin/python" answers="$work/template-answers" language
     for language in python octave cpp rust; do
         judged "init $language" 0 "NEXT" "cd $work/$language" -- immaculate init "$language" "$work/$language"
-        judged "init $language again" 2 "is there already, and is not overwritten" -- immaculate init "$language" "$work/$language"
+        judged "init $language again" 2 "exists already and is not overwritten" -- immaculate init "$language" "$work/$language"
     done
     if has_numpy; then
         expect 0 "$all" -- -- "$python" "$work/python/my_filter.py"

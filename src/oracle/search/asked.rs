@@ -1,6 +1,6 @@
-//! A program that is asked one problem after the other: each is certified, asked and judged, without a diagnosis.
+//! A program that is asked one problem after another: each is certified, asked and judged, without a diagnosis.
 //!
-//! After this file the reader knows what counts as a failure, when two are of the same kind, and which problems are fair to ask.
+//! This file defines a failure, failures of the same kind, and the problems that are fair to ask.
 
 use crate::imm::Quantity;
 use crate::number::Real;
@@ -39,9 +39,11 @@ impl Symptom {
             Outcome::Broken(Broken::Crashed { status, stderr }) => {
                 outcome("ended", stderr.lines().last().unwrap_or(status))
             }
-            Outcome::Broken(Broken::Garbage { reason, .. }) => outcome("answered what is no message", reason),
+            Outcome::Broken(Broken::Garbage { reason, .. }) => {
+                outcome("answered something that is not a message", reason)
+            }
             Outcome::Broken(broken @ Broken::TimedOut { .. }) => outcome("did not answer", &broken.to_string()),
-            Outcome::Broken(broken) => outcome("answered what cannot be used", &broken.to_string()),
+            Outcome::Broken(broken) => outcome("gave an answer that cannot be used", &broken.to_string()),
             _ => None,
         }
     }

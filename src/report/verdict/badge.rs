@@ -1,6 +1,6 @@
 //! A verdict as a badge: a small picture with the name of this program and the verdict in a few words.
 //!
-//! After this file the reader knows that the colour says no more than the words, and that the badge needs no network and no fonts.
+//! The colour says no more than the words. The badge needs no network and no fonts.
 
 use super::Overall;
 use crate::oracle::check::{Outcome, Report};

@@ -1,19 +1,19 @@
 //! What explains the faults, as HTML.
 //!
-//! After this file the reader knows how names of the catalogue, several together, and formulas without a name look on the page.
+//! These are entries of the catalogue, alone or several together, and computed formulas that have no name.
 
 use crate::oracle::diagnose::{Diagnosis, Share};
 use crate::oracle::formula::{ComputedFormula, ComputedFormulas};
 use crate::oracle::variant::Variant;
 use maud::{Markup, html};
 
-/// The diagnosis; nothing where there is nothing to explain.
+/// The diagnosis; empty if there is nothing to explain.
 pub(super) fn causes(diagnosis: &Diagnosis) -> Markup {
     match diagnosis {
         Diagnosis::Nothing => html! {},
         Diagnosis::One(variants) => html! {
             (list(variants))
-            p { "With this, " (EXPLAINED) @if variants.len() > 1 { " These cannot be told apart by what was shown." } }
+            p { "With this, " (EXPLAINED) @if variants.len() > 1 { " The shown values cannot distinguish them." } }
         },
         Diagnosis::Several(members) => html! {
             ol.causes { @for alternatives in members { li { (either(alternatives)) } } }
@@ -23,7 +23,7 @@ pub(super) fn causes(diagnosis: &Diagnosis) -> Markup {
             ol.causes { @for pair in pairs.iter().take(5) { li { (one(pair[0])) " " b { "and " } (one(pair[1])) } } }
             p {
                 "With both, " (EXPLAINED)
-                @if pairs.len() > 1 { " " (pairs.len()) " pairs do, and cannot be told apart by what was shown." }
+                @if pairs.len() > 1 { " " (pairs.len()) " pairs do; the shown values cannot distinguish them." }
             }
         },
         Diagnosis::ByFilter(filters) => html! {
@@ -42,24 +42,24 @@ pub(super) fn causes(diagnosis: &Diagnosis) -> Markup {
     }
 }
 
-const EXPLAINED: &str = "every value that was shown is explained by the program’s own values before it.";
+const EXPLAINED: &str = "every shown value is explained by the program’s own earlier values.";
 
-/// What is said where no one thing explains all.
+/// The diagnosis when no single entry explains every value.
 fn in_parts(parts: &[Share], unexplained: &[String], formulas: &ComputedFormulas, of: usize) -> Markup {
     html! {
         @if !unexplained.is_empty() && !formulas.is_complete {
-            p { "Nothing in the catalogue, alone or with others, explains every value." }
+            p { "No entry of the catalogue, alone or with others, explains every value." }
         }
         @for (index, part) in parts.iter().enumerate() {
             p {
                 @if index == 0 { "This explains " (part.cases) " of the " (of) " cases with a fault:" }
-                @else { "And this, alone or with the others, " (part.cases) " more:" }
+                @else { "This, alone or with the others, explains " (part.cases) " more:" }
             }
             (list(&part.variants))
         }
         @if !unexplained.is_empty() && !parts.is_empty() {
             p {
-                @if formulas.is_complete { "The catalogue leaves " } @else { "Unexplained: " }
+                @if formulas.is_complete { "Not explained by the catalogue: " } @else { "Unexplained: " }
                 @for (index, id) in unexplained.iter().enumerate() { @if index > 0 { ", " } code { (id) } }
                 "."
             }
@@ -73,7 +73,7 @@ fn computed(found: &ComputedFormula) -> Markup {
     html! {
         p {
             "In " code { (found.quantity.name()) } " (" (found.filters.join(", "))
-            @if let Some(condition) = &found.condition { ", " (condition) } ") this gives what is shown in "
+            @if let Some(condition) = &found.condition { ", " (condition) } ") this formula gives the shown value in "
             (found.explains) " of " (found.of) " faulty values:"
         }
         div.forms {
@@ -83,7 +83,7 @@ fn computed(found: &ComputedFormula) -> Markup {
     }
 }
 
-/// Alternatives, of which each explains the same.
+/// Alternatives; each explains the same.
 fn list(variants: &[&Variant]) -> Markup {
     html! { ul.causes { @for variant in variants { li { (one(variant)) } } } }
 }

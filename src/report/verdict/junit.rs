@@ -1,6 +1,6 @@
-//! A verdict as JUnit XML, which GitLab, Jenkins and the test reporters of GitHub show: a suite a kind of filter, a test a case.
+//! A verdict as JUnit XML, which GitLab, Jenkins and the test reporters of GitHub show: one suite per kind of filter, one test per case.
 //!
-//! After this file the reader knows what passes, fails and is skipped there. Something fails if and only if the verdict is wrong.
+//! A test fails if and only if the verdict is wrong.
 
 use super::{in_figures, is_wrong, of_the_whole};
 use crate::oracle::check::{CaseReport, Outcome, Report};
@@ -11,7 +11,7 @@ use quick_junit::{NonSuccessKind, SerializeError, TestCase, TestCaseStatus, Test
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// Of the faults of a case no more are described: the rest mostly follows from them.
+/// At most this many faults of a case are described; the rest mostly follow from them.
 const DESCRIBED: usize = 3;
 
 /// The report as JUnit XML.
@@ -114,7 +114,7 @@ fn explanation(report: &Report, case: &CaseReport) -> String {
     for failure in case.judgement.iter().flat_map(|judgement| &judgement.failures).take(1) {
         let _ = writeln!(
             text,
-            "On the program's own values the equations have no answer: {failure}."
+            "On the program's own values these equations cannot be evaluated: {failure}."
         );
     }
     if text.is_empty() {
@@ -126,7 +126,7 @@ fn explanation(report: &Report, case: &CaseReport) -> String {
     text
 }
 
-/// What is said of a case that passed.
+/// The text of a case that passed.
 fn passed(report: &Report, case: &CaseReport) -> String {
     let mut text = words(&case.outcome).to_owned();
     if case.outcome == Outcome::Wrong {

@@ -1,6 +1,6 @@
 //! A verdict as Markdown, for a pull request or for the summary of a workflow.
 //!
-//! After this file the reader knows that a program's own words stand in code there, where they are neither markup nor links nor mentions.
+//! A program's own words are set as code, so that they cannot act as markup, links or mentions.
 
 use super::{Overall, coverage, figures, of_the_whole, severity};
 use crate::oracle::behaviour::Behaviour;
@@ -11,7 +11,7 @@ use crate::report::fault::faulty_equations;
 use crate::report::formula;
 use std::fmt::Write;
 
-/// No more cases that end without values are listed.
+/// At most this many cases that end without values are listed.
 const LISTED: usize = 10;
 
 /// The report as Markdown; the verdict is its first line.
@@ -53,7 +53,7 @@ pub fn markdown(report: &Report) -> String {
     text
 }
 
-/// The cases that are wrong without a faulty value: the program ended, said nothing, or refused what is right.
+/// The cases that are wrong but have no faulty value: the program ended, said nothing, or refused a valid problem.
 fn without_values(report: &Report) -> String {
     let is_one = |case: &&CaseReport| case.outcome.is_wrong() && case.outcome != Outcome::Wrong;
     let cases: Vec<&CaseReport> = report.cases.iter().filter(is_one).collect();
@@ -68,27 +68,27 @@ fn without_values(report: &Report) -> String {
     for sentence in without_answer(report).iter().take(1) {
         let _ = writeln!(
             body,
-            "On the program's own values the equations have no answer: {sentence}"
+            "On the program's own values these equations cannot be evaluated: {sentence}"
         );
     }
     if body.is_empty() {
         return String::new();
     }
     let summary = match cases.len() {
-        0 => "Steps without an answer".to_owned(),
-        1 => "1 case that is wrong without a faulty value".to_owned(),
-        several => format!("{several} cases that are wrong without a faulty value"),
+        0 => "Steps that cannot be evaluated".to_owned(),
+        1 => "1 case that is wrong but has no faulty value".to_owned(),
+        several => format!("{several} cases that are wrong but have no faulty value"),
     };
     details(&summary, &fenced(&body))
 }
 
-/// A row a behaviour and a column a family of filters.
+/// One row per behaviour and one column per family of filters.
 fn behaviours(report: &Report) -> String {
     let grades = report.grades();
     if grades.is_empty() {
         return String::new();
     }
-    let mut text = String::from("\n| what a filter meets |");
+    let mut text = String::from("\n| situation |");
     for (family, _) in &grades {
         let _ = write!(text, " {family} |");
     }
@@ -107,7 +107,7 @@ fn behaviours(report: &Report) -> String {
     text
 }
 
-/// What is shown on demand. Markdown inside of HTML begins after an empty line.
+/// A section that unfolds. Markdown inside HTML begins after an empty line.
 fn details(summary: &str, body: &str) -> String {
     format!(
         "\n<details><summary>{}</summary>\n\n{body}\n</details>\n",
@@ -130,7 +130,7 @@ fn html(words: &str) -> String {
         .collect()
 }
 
-/// A word of a program, in a line, as code: whatever is in it, it is no markup.
+/// A program's word inside a line, as code, so that it is never markup.
 fn code(text: &str) -> String {
     let plain = |c: char| match c {
         '`' => '\'',
@@ -140,7 +140,7 @@ fn code(text: &str) -> String {
     format!("`{}`", text.chars().map(plain).collect::<String>().trim())
 }
 
-/// Lines as they are, in a fence that is longer than any in them.
+/// Lines unchanged, in a fence longer than any fence inside them.
 fn fenced(text: &str) -> String {
     let longest = text.split(|c| c != '`').map(str::len).max().unwrap_or(0);
     let fence = "`".repeat(3.max(longest + 1));

@@ -1,6 +1,6 @@
-//! What becomes of a verdict outside of the terminal: files for people and for programs that gather the results of tests.
+//! The verdict as files, for people and for programs that collect test results.
 //!
-//! After this folder the reader knows that none of them judges anything: each is made from the same values as the text and the JSON.
+//! Nothing here judges: every file is made from the same values as the text and the JSON.
 //!
 //! | file       | what it makes                                                               |
 //! |------------|-----------------------------------------------------------------------------|
@@ -57,7 +57,7 @@ impl Overall {
     }
 }
 
-/// The cases whose outcome is as some function says.
+/// The number of cases with a certain outcome.
 fn count(report: &Report, is: fn(&Outcome) -> bool) -> usize {
     report.cases.iter().filter(|case| is(&case.outcome)).count()
 }
@@ -68,7 +68,7 @@ fn right_cases(report: &Report) -> usize {
     })
 }
 
-/// The sentence that matters.
+/// The verdict in one sentence.
 pub(super) fn sentence(report: &Report) -> String {
     let see = if Overall::of(report) == Overall::Otherwise {
         ", see above"
@@ -79,7 +79,7 @@ pub(super) fn sentence(report: &Report) -> String {
     format!("{verdict}{see}: {}, {}", report.ready.name, figures(report))
 }
 
-/// What a verdict rests on: the precision, how many cases are what, and to how many digits values are right.
+/// The basis of a verdict: the precision, the number of cases by outcome, and the digits to which values are right.
 fn figures(report: &Report) -> String {
     let parts: Vec<String> = [
         (right_cases(report), "right"),
@@ -144,7 +144,7 @@ fn severity(report: &Report) -> Option<String> {
         return None;
     }
     if report.hidden.contains(&Quantity::CombinedMean) {
-        return Some("How far the combined mean is off is not known: it was never shown.".to_owned());
+        return Some("The error of the combined mean is unknown, because the program never showed it.".to_owned());
     }
     Some(match farthest_mean(report) {
         None => "The combined mean is right wherever it was shown and judged.".to_owned(),
@@ -155,7 +155,10 @@ fn severity(report: &Report) -> Option<String> {
                 case.id
             )
         }
-        Some((case, value)) => format!("The combined mean is no number in {}, step {}.", case.id, value.place.0),
+        Some((case, value)) => format!(
+            "The combined mean is not a number in {}, step {}.",
+            case.id, value.place.0
+        ),
     })
 }
 
@@ -173,7 +176,7 @@ fn is_wrong(report: &Report, case: &CaseReport) -> bool {
     case.outcome.is_wrong() && !(case.outcome == Outcome::Wrong && report.is_excused())
 }
 
-/// What is wrong and belongs to no case: a heading and a sentence each.
+/// Errors that belong to no single case: a heading and a sentence each.
 fn of_the_whole(report: &Report) -> Vec<(&'static str, String)> {
     let observations = super::observation::sentences(&report.observations).into_iter();
     let mut wrong: Vec<_> = observations.map(|sentence| ("Answers as a whole", sentence)).collect();
@@ -184,21 +187,19 @@ fn of_the_whole(report: &Report) -> Vec<(&'static str, String)> {
 }
 
 const ECHO_WRONG: &str =
-    "ECHO WRONG: matrix times vector is not what it should be. Does the program read matrices by columns?";
+    "ECHO WRONG: the product of matrix and vector is wrong. Does the program read matrices by columns?";
 
-/// What was judged and what was not, a sentence each.
+/// What was judged and what was not, one sentence each.
 pub(super) fn coverage(report: &Report) -> Vec<String> {
     let (judged, of) = counts(report);
-    let mut sentences = vec![format!(
-        "{judged} of {of} values of the cases that were asked for were judged."
-    )];
+    let mut sentences = vec![format!("{judged} of {of} values in the selected cases were judged.")];
     sentences.extend(passed_over(report));
     sentences.extend(certified(report));
     if !report.hidden.is_empty() && judged > 0 {
         let names: Vec<&str> = report.hidden.iter().map(|quantity| quantity.name()).collect();
         sentences.push(format!(
-            "Never shown: {}. A mistake there is seen only by what follows from it, and what was right there by chance or \
-             cancels later is not seen at all.",
+            "Never shown: {}. A mistake there is found only through later values, and not at all if it has no effect by chance \
+             or cancels later.",
             names.join(", ")
         ));
     }
@@ -206,13 +207,13 @@ pub(super) fn coverage(report: &Report) -> Vec<String> {
     let not_asked = not_asked.filter(|case| case.why != Unasked::Selection).count();
     if not_asked > 0 {
         sentences.push(format!(
-            "Cases not asked for: {not_asked}, of filters or formats that the program does not have, or with input that it leaves to its \
-             caller to check."
+            "Cases not asked: {not_asked}. The program does not have their filter or format, or leaves input checks to its \
+             caller."
         ));
     }
     match report.echo {
         None => sentences
-            .push("The program gave no echo: whether it reads matrices by rows is seen by the cases only.".to_owned()),
+            .push("The program gave no echo, so only the cases can show whether it reads matrices by rows.".to_owned()),
         Some(true) => {}
         Some(false) => sentences.push(ECHO_WRONG.to_owned()),
     }
@@ -225,19 +226,19 @@ fn passed_over(report: &Report) -> Vec<String> {
     for (finding, sentence) in [
         (
             Finding::CannotTell,
-            "cannot be judged: rounding in this precision moves them by as much as their unit",
+            "cannot be judged: rounding in this precision moves them by as much as their scale",
         ),
         (
             Finding::Undetermined,
-            "are undetermined: they rest on hidden values that are under suspicion",
+            "are undetermined: they depend on values that are not shown and may be wrong",
         ),
         (
             Finding::Unused,
-            "belong to a mode of probability zero, which no output depends on, and were passed over",
+            "belong to a mode of probability zero, which affects no output, and were ignored",
         ),
         (
             Finding::Stale,
-            "are shown where there are none, without a detection or as covariances of fixed gains, and were passed over",
+            "should not exist (without a detection, or as covariances of fixed gains) and were ignored",
         ),
     ] {
         let values = report
@@ -253,7 +254,7 @@ fn passed_over(report: &Report) -> Vec<String> {
     sentences
 }
 
-/// What of the problems of the user is proven: those that are proven to the end together, each of the others by itself.
+/// How far the user's problems are proven: one sentence for all that are proven to the end, and one for each of the others.
 fn certified(report: &Report) -> Vec<String> {
     let of_case = |case: &CaseReport| Some((case.id.clone(), case.certified?, case.dimensions.steps()));
     let own = report.cases.iter().filter_map(of_case);
@@ -268,8 +269,8 @@ fn certified(report: &Report) -> Vec<String> {
     };
     let to_a_step = partly.into_iter().map(|(id, certified, all)| {
         format!(
-            "{id}: the expected values are certified to step {certified} of {all}; after it they are those of Immaculate's own run in doubles, \
-             with its rounding noise, and each equation is judged on the program's own values as before."
+            "{id}: the expected values are certified to step {certified} of {all}. Later ones come from Immaculate's own run in doubles, \
+             with its rounding noise; each equation is still judged on the program's own values."
         )
     });
     to_the_end.into_iter().chain(to_a_step).collect()

@@ -1,7 +1,7 @@
 //! A verdict as one page of HTML that needs no network and no script.
 //!
-//! After this file the reader knows what stands on it: the verdict and how bad it is, what explains it, each equation with a fault, in the
-//! program's own numbers and with its errors over the steps, and what was judged and what was not.
+//! It shows the verdict and how bad it is; the explanation; each faulty equation with the program's own numbers and its errors over the
+//! steps; and what was judged and what was not.
 
 use super::causes::causes;
 use super::{InCase, Overall, coverage, farthest_mean, figures, is_wrong, of_the_whole, plot, severity};
@@ -70,7 +70,7 @@ fn mark(verdict: Overall) -> Markup {
     html! { span class=(format!("verdict {class}")) { (verdict.words()) } }
 }
 
-/// How far what the filter is for is off, and what is wrong with the program as a whole.
+/// The error of the filter's output, and what is wrong with the program as a whole.
 fn how_bad(report: &Report) -> Result<Markup, NotDrawn> {
     let plot = match farthest_mean(report).filter(|_| Overall::of(report) == Overall::Wrong) {
         Some((case, value)) => plot::errors(case, value, "severity")?,
@@ -83,7 +83,7 @@ fn how_bad(report: &Report) -> Result<Markup, NotDrawn> {
         @for (heading, sentence) in of_the_whole(report) { p { b { (heading) ". " } (sentence) } }
         @for remark in &report.remarks { p { b { "Remark. " } (remark) } }
         @if !without_answer.is_empty() {
-            p { "On the program’s own values the equations have no answer here:" }
+            p { "On the program’s own values these equations cannot be evaluated:" }
             ul { @for sentence in without_answer.iter().take(3) { li { (sentence) } } }
         }
     })
@@ -104,12 +104,12 @@ fn described(report: &Report, fault: &FaultyEquation) -> Result<Markup, NotDrawn
                 pre.in-numbers { @for line in in_numbers(explained) { (line) "\n" } }
             }
             @for sentence in fault.hidden().into_iter().chain(fault.others()) { p.note { (sentence) } }
-            @if let Some(plot) = plot { (drawing(&plot, "Where the line of this equation is high, the error is made here; elsewhere it is inherited.")) }
+            @if let Some(plot) = plot { (drawing(&plot, "Where this equation’s line is high, the error is made here; elsewhere it is inherited.")) }
         }
     })
 }
 
-/// The faulty value of an equation whose case shows most of its values: errors over steps can be seen there best.
+/// The faulty value of an equation in the longest case: errors over steps are seen best there.
 fn most_steps<'a>(fault: &FaultyEquation<'a>) -> InCase<'a> {
     let steps = |(case, _): &InCase| case.dimensions.steps();
     let first = (fault.case, fault.first);
@@ -120,7 +120,7 @@ fn most_steps<'a>(fault: &FaultyEquation<'a>) -> InCase<'a> {
         .fold(first, |a, b| if steps(&b) > steps(&a) { b } else { a })
 }
 
-/// The first equation of a paper that a text names: the others say the same in other letters.
+/// The first equation of a paper that a text names; the others say the same in other letters.
 fn published(names: &str) -> Option<&'static PublishedEquation> {
     let reference = citations(names).into_iter().next()?;
     let paper = Paper::ALL.into_iter().find(|paper| paper.key() == reference.paper)?;
@@ -128,10 +128,10 @@ fn published(names: &str) -> Option<&'static PublishedEquation> {
     equations.find(|equation| equation.label() == reference.label)
 }
 
-/// What a filter may meet, and how this one did.
+/// How the filter did in each situation.
 fn behaviours(report: &Report) -> Markup {
     let grades = report.grades();
-    let caption = "What a filter meets, and how this one did, by the number of cases";
+    let caption = "How the filter did in each situation, by the number of cases";
     let class = |grade: &Grade| match grade {
         Grade::Right(_) => Some("holds"),
         Grade::Wrong(..) => Some("fails"),
@@ -140,11 +140,11 @@ fn behaviours(report: &Report) -> Markup {
     html! {
         @if !grades.is_empty() {
             section aria-labelledby="behaviours" {
-                h2 #behaviours { "What it met" }
+                h2 #behaviours { "Situations" }
                 (framed(caption, &html! {
                     table {
                         caption { (caption) }
-                        thead { tr { th scope="col" { "what a filter meets" } @for (family, _) in &grades { th scope="col" { (family) } } } }
+                        thead { tr { th scope="col" { "situation" } @for (family, _) in &grades { th scope="col" { (family) } } } }
                         tbody {
                             @for (index, behaviour) in Behaviour::ALL.into_iter().enumerate() {
                                 tr {
@@ -177,15 +177,14 @@ fn judged(report: &Report) -> Markup {
 fn cases(report: &Report) -> Markup {
     let (wrong, others): (Vec<&CaseReport>, Vec<&CaseReport>) =
         report.cases.iter().partition(|case| is_wrong(report, case));
-    let caption =
-        "Every case: its verdict, how many of its values were judged, and how many digits its right values have";
+    let caption = "Every case: its verdict, how many values were judged, and to how many digits its right values agree";
     html! {
         section aria-labelledby="cases" {
             h2 #cases { "Cases" }
             details open[report.cases.len() <= 30] {
                 summary {
                     (report.cases.len()) " cases, "
-                    @match wrong.len() { 0 => "none of them wrong", 1 => "of which 1 is wrong", many => { "of which " (many) " are wrong" } }
+                    @match wrong.len() { 0 => "none of them wrong", many => { (many) " of them wrong" } }
                 }
                 (framed(caption, &html! {
                     table.numbers {

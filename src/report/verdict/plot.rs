@@ -1,7 +1,7 @@
 //! The errors of a value over the steps of a case, as SVG.
 //!
-//! After this file the reader can look at whether an error was made once and is inherited, or is made anew in every step: one line is the
-//! error against the certified values, the other what the value's own equation adds to it.
+//! The plot shows whether an error was made once and is inherited, or is made again in every step: one line is the error against the
+//! certified values, the other is the part that the value's own equation adds.
 
 use crate::oracle::check::CaseReport;
 use crate::oracle::judge::{Judged, LIMIT};
@@ -17,7 +17,7 @@ const HEIGHT: u32 = 300;
 const LEAST: f64 = 1e-17;
 /// A larger one than this is drawn here.
 const MOST: f64 = 1e17;
-/// A case of fewer steps has nothing to be seen over steps.
+/// A case with fewer steps is not drawn.
 const STEPS: usize = 3;
 
 /// The errors of the quantity and mode of a value, in the steps of its case; nothing where there are too few.
@@ -47,7 +47,7 @@ pub(super) fn errors(case: &CaseReport, value: &Judged, name: &str) -> Result<Op
     let caption = Caption {
         name: name.to_owned(),
         title: format!("{}: {what}", case.id),
-        note: "Errors are drawn by their decades; those smaller than 1e-17 at 1e-17.".to_owned(),
+        note: "Logarithmic scale; errors smaller than 1e-17 are drawn at 1e-17.".to_owned(),
         says: format!(
             "The error of {what} in each of {} steps, against the certified values and against its own equation.",
             values.len()
@@ -60,7 +60,7 @@ pub(super) fn errors(case: &CaseReport, value: &Judged, name: &str) -> Result<Op
         ("made in this equation".to_owned(), Key::Line(looks[1])),
     ];
     if !allowed.is_empty() {
-        legend.push(("as much may be rounding".to_owned(), Key::Thin(MEASURED, 0)));
+        legend.push(("could be rounding".to_owned(), Key::Thin(MEASURED, 0)));
     }
     let lines = [(certified, looks[0]), (own, looks[1])].map(|(points, look)| Line {
         look,
