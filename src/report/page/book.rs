@@ -1,7 +1,7 @@
-//! The book as HTML: a chapter a paper, a section an equation, and the index between numbers and code.
+//! The book as HTML: one chapter per paper, one section per equation, and the index between numbers and code.
 //!
-//! After this file the reader knows what a section holds, in this order: what the equation says, its formula, what is printed instead, why
-//! it is so and where the code is, the tests that hold it, and the mistakes that are made in it with the cases that catch them.
+//! A section shows, in this order: the meaning of the equation, its formula, the misprint if there is one, the derivation and the code,
+//! the tests, and the mistakes with the cases that catch them.
 //!
 //! An item that realises several equations of a paper stands in the section of the first; the others lead there.
 
@@ -119,7 +119,7 @@ fn first_of(realisation: &Realisation, paper: Paper) -> Option<&'static Entry> {
 fn held(entry: &Entry) -> Markup {
     html! {
         @if !entry.evidence.is_empty() {
-            h3 { "Held by" }
+            h3 { "Tested by" }
             ul class="evidence" {
                 @for evidence in &entry.evidence {
                     li { code { (evidence.test) } " (" (evidence.kind) "), " (evidence.path) ":" (evidence.line) }
@@ -145,7 +145,7 @@ fn caught(entry: &Entry) -> Markup {
                 ": " (entry.mistakes.len()) ", caught by " (entry.cases().len()) @if entry.cases().len() == 1 { " case" } @else { " cases" }
             }
             table {
-                caption { "What is done wrong, or otherwise, in " (entry.reference) }
+                caption { "Mistakes and conventions in " (entry.reference) }
                 thead { tr { th scope="col" { "name" } th scope="col" { "kind" } th scope="col" { "what you did" } th scope="col" { "case" } } }
                 tbody {
                     @for variant in &entry.mistakes {
@@ -167,8 +167,8 @@ pub fn index() -> Markup {
     html! {
         h1 #book { "The book of equations" }
         p {
-            "Every equation with its derivation, the code that realises it, the tests that hold it, and the mistakes that are made in it "
-            "with the cases that catch them. Code that realises several equations stands with the first. Symbols are explained under "
+            "Every equation with its derivation, the code that implements it, its tests, typical mistakes, "
+            "and the cases that catch them. Code that implements several equations stands with the first. Symbols are explained under "
             a href="notation.html" { "notation" } "."
         }
         @for paper in Paper::ALL {
@@ -176,7 +176,7 @@ pub fn index() -> Markup {
             (framed(&format!("The equations of {}", paper.key()), &index_of(paper)))
         }
         h2 #index-code { "By code" }
-        (framed("Every item of the source that realises equations", &by_code()))
+        (framed("Every item of the source that implements equations", &by_code()))
     }
 }
 
@@ -204,7 +204,7 @@ fn index_of(paper: Paper) -> Markup {
 fn by_code() -> Markup {
     html! {
         table {
-            caption.aloud { "Every item of the source that realises equations" }
+            caption.aloud { "Every item of the source that implements equations" }
             thead { tr { th scope="col" { "code" } th scope="col" { "where" } th scope="col" { "equations" } } }
             tbody {
                 @for realisation in realisations() {

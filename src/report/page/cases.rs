@@ -1,4 +1,4 @@
-//! The certified cases as a page, by what a filter meets in them.
+//! The certified cases as a page, by the situations that they put a filter in.
 
 use super::table::framed;
 use crate::oracle::behaviour::Behaviour;
@@ -41,13 +41,13 @@ fn overview(cases: &[&Case]) -> Markup {
         let meets = |case: &&&Case| Behaviour::of(&case.problem).contains(&behaviour) && has_family(case, family);
         cases.iter().filter(meets).count()
     };
-    let caption = "How many cases a kind of filter has; a dash where it cannot meet the behaviour";
+    let caption = "The number of cases for each kind of filter; a dash where the situation cannot arise";
     framed(
         caption,
         &html! {
             table.numbers {
                 caption { (caption) }
-                thead { tr { th scope="col" { "what a filter meets" } @for family in FAMILIES { th scope="col" { (family) } } } }
+                thead { tr { th scope="col" { "situation" } @for family in FAMILIES { th scope="col" { (family) } } } }
                 tbody {
                     @for behaviour in Behaviour::ALL {
                         tr {
@@ -79,7 +79,7 @@ fn list(caption: &str, cases: &[&Case]) -> Markup {
         &html! {
             table {
                 caption.aloud { (caption) }
-                thead { tr { th scope="col" { "case" } th scope="col" { "filter" } th scope="col" { "what it is for" } } }
+                thead { tr { th scope="col" { "case" } th scope="col" { "filter" } th scope="col" { "purpose" } } }
                 tbody {
                     @for case in cases {
                         tr {

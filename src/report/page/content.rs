@@ -1,7 +1,7 @@
-//! What the page shows: everything that is run for it.
+//! The computations behind the pages.
 //!
-//! After this file the reader knows which computations the page rests on. They are those of the other commands, with the same seed and so
-//! with the same figures: `reproduce`, `reproduce sustika2015 --sweep`, `claims` and `stability --map`.
+//! They are the same as those of the other commands, with the same seed and the same results: `reproduce`,
+//! `reproduce sustika2015 --sweep`, `claims` and `stability --map`.
 
 use crate::paper::monte_carlo::Progress;
 use crate::paper::result::Reproduction;
@@ -58,7 +58,7 @@ pub struct OfPaper {
     pub judgements: Vec<JudgedClaim>,
 }
 
-/// Whoever watches the computation: the step that begins, with its length where that is known, and every unit that is done.
+/// An observer of the computation: called when a step begins, with its length if known, and for every unit of work.
 pub struct Watch<'a> {
     /// A step begins.
     pub begin: &'a dyn Fn(String, Option<usize>),

@@ -1,6 +1,4 @@
-//! The errata of a paper: the printed and the corrected form side by side.
-//!
-//! After this file the reader knows what is wrong in a paper as printed, why, and which test shows it.
+//! The errata of a paper: the printed form beside the corrected one, the reason, and the test that shows it.
 
 use super::markup::formula;
 use crate::book::{Entry, entries_of};
@@ -16,8 +14,8 @@ pub fn section(paper: Paper) -> Markup {
         .collect();
     html! {
         section aria-labelledby=(format!("{key}-errata")) {
-            h2 id=(format!("{key}-errata")) { "What is wrong as printed in " (key) }
-            p { "The proofs are in the book of equations. " (errata.len()) " of " (entries_of(paper).count()) " equations are wrong as printed." }
+            h2 id=(format!("{key}-errata")) { "Misprints in " (key) }
+            p { "The proofs are in the book of equations. " (errata.len()) " of " (entries_of(paper).count()) " equations are printed wrongly." }
             @for (entry, erratum) in errata { (article(entry, erratum)) }
         }
     }

@@ -1,7 +1,6 @@
-//! Which figures a paper has on the page, and what is to be seen on each.
+//! The figures of a paper on its page, with their captions.
 //!
-//! After this file the reader knows how a drawing comes onto the page: as it is drawn for a file, with a caption; the page's style gives
-//! its colours on a dark screen.
+//! A drawing is the same as in a file; the page's style sets its colours on a dark screen.
 
 use super::content::{Content, OfPaper, OfRuns};
 use super::table::table;
@@ -41,7 +40,7 @@ pub fn published_and_computed(of_paper: &OfPaper) -> Result<Option<Markup>, NotD
     let Some(drawn) = published::published_and_computed(of_paper.paper, &comparisons) else {
         return Ok(None);
     };
-    let caption = "What the paper publishes, and what its own equations give under its own parameters.";
+    let caption = "The published figures, and what the paper’s own equations give with its own parameters.";
     Ok(Some(framed(&drawn?, caption)))
 }
 
@@ -60,11 +59,11 @@ pub fn of_simulation(reproduction: &Reproduction) -> Result<Vec<Markup>, NotDraw
     }
     figures.push(framed(
         &figure::errors(reproduction)?,
-        "Root mean square errors over time. Lines that coincide are drawn one over the other, each thinner than the one below it.",
+        "Root mean square errors over time. Coinciding lines are drawn on top of each other, each thinner than the one below it.",
     ));
     figures.push(framed(
         &figure::mode_probabilities(reproduction)?,
-        "Mean mode probabilities over time. A good filter follows the shade.",
+        "Mean mode probabilities over time. A good filter follows the shading.",
     ));
     Ok(figures)
 }
@@ -103,7 +102,7 @@ fn of_derbez2000(content: &Content) -> Result<Vec<Markup>, NotDrawn> {
 
 fn of_sustika2015(content: &Content) -> Result<Vec<Markup>, NotDrawn> {
     let mut figures = vec![
-        html! { h3 #sustika2015-figures-sweep { "Scenario 3: the fit error over the noises that the filters take for granted" } },
+        html! { h3 #sustika2015-figures-sweep { "Scenario 3: the fit error over the noises that the filters assume" } },
     ];
     for (trajectory, number) in SweptTrajectory::ALL.into_iter().zip([2, 4]) {
         figures.push(framed(

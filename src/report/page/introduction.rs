@@ -1,4 +1,4 @@
-//! The front page: what a stranger understands in a minute, and where everything else is.
+//! The front page: what the project is, in a minute, and where everything else is.
 
 use super::content::{Content, OfPaper};
 use super::ledger::{count, mark};
@@ -13,7 +13,7 @@ use maud::{Markup, html};
 
 const README: &str = include_str!("../../../README.md");
 
-/// What is asked first, and where the answer is.
+/// The first questions of a newcomer, and where the answers are.
 const QUESTIONS: [(&str, &str, &str); 10] = [
     (
         "Is my filter right?",
@@ -48,12 +48,12 @@ const QUESTIONS: [(&str, &str, &str); 10] = [
     (
         "What is in the published cases?",
         "cases.html",
-        "the cases, by what a filter meets",
+        "the cases, by situation",
     ),
     (
         "Why should I believe the numbers?",
         "guarantees.html",
-        "what is guaranteed, and by what",
+        "what is guaranteed, and by which evidence",
     ),
     (
         "What does equation (56) say, and why?",
@@ -75,7 +75,7 @@ pub fn page(content: &Content) -> Markup {
     }
 }
 
-/// What there is, counted.
+/// The contents, counted.
 fn holdings() -> Markup {
     let equations: Vec<&PublishedEquation> = Paper::ALL
         .into_iter()
@@ -93,7 +93,7 @@ fn holdings() -> Markup {
             cases,
             "cases",
             "cases.html",
-            "whose every number is the double nearest to the exact value",
+            "in which every number is the double nearest to the exact value",
         ),
         (mistakes, "mistakes", "mistakes.html", "that a verdict can name"),
         (

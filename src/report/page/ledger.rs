@@ -1,7 +1,6 @@
 //! The ledger of a paper's claims.
 //!
-//! After this file the reader knows how a judged claim is shown: the verdict, the paper's words, what was asked, the answer, what it
-//! rests on, and how it was judged.
+//! A judged claim shows the verdict, the paper's words, the question, the answer, its evidence, and how it was judged.
 
 use super::content::OfPaper;
 use crate::paper::verdict::{JudgedClaim, Verdict};

@@ -1,4 +1,4 @@
-//! Links between pages: whoever writes an anchor need not know on which page it stands.
+//! Links between pages: a link names an anchor, and need not know its page.
 
 use super::Page;
 use std::collections::BTreeMap;

@@ -1,6 +1,6 @@
 //! LaTeX and doc comments as HTML.
 //!
-//! After this file the reader knows that formulas are MathML, which browsers show by themselves, and how a doc comment is set.
+//! Formulas are MathML, which browsers display without help.
 
 use crate::book::markup::{cells, events};
 use crate::book::source::Item;

@@ -15,9 +15,9 @@ pub fn page() -> Markup {
     html! {
         h1 { "Mistakes that a verdict can name" }
         p {
-            (count(Kind::Mistake)) " mistakes, " (count(Kind::Convention)) " conventions and " (count(Kind::Form)) " forms, by the value in whose "
-            "equation they are made. A mistake is wrong. A convention is a choice that the papers leave open; a program declares its own. A form is "
-            "the same value in other algebra, and never called wrong. What is not in the catalogue is found as a formula."
+            (count(Kind::Mistake)) " mistakes, " (count(Kind::Convention)) " conventions and " (count(Kind::Form)) " forms, listed by the value "
+            "whose equation they concern. A mistake is wrong. A convention is a choice that the papers leave open; a program declares its own. A form "
+            "computes the same value with different algebra and is never called wrong. A search over formulas finds mistakes that are not listed."
         }
         p { "Try one: " code { "immaculate check -- immaculate answer --plant mixed-spread-omitted" } "." }
         @for quantity in met {
@@ -28,7 +28,7 @@ pub fn page() -> Markup {
 }
 
 fn table(quantity: Quantity, variants: &[&Variant]) -> Markup {
-    let caption = format!("What is done wrong, or otherwise, in {}", quantity.name());
+    let caption = format!("Mistakes, conventions and forms in {}", quantity.name());
     framed(
         &caption,
         &html! {

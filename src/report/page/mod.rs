@@ -1,7 +1,7 @@
 //! The site: static pages that show everything, for people who would rather look than run.
 //!
-//! After this folder the reader knows how the pages are put together. Each page stands by itself: it needs no network and no script, says
-//! so to the browser, reads in any width, on dark and light screens, on paper, by keyboard and aloud. The same seed gives the same bytes.
+//! Each page is complete in itself: it needs no network and no script, and tells the browser so. It reads at any width, on dark and light
+//! screens, on paper, by keyboard and aloud. The same seed gives the same bytes.
 //!
 //! | file           | what it makes                                                         |
 //! |----------------|-----------------------------------------------------------------------|

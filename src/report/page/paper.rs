@@ -1,6 +1,4 @@
-//! One paper: its scenarios in figures, its tables beside the computed ones, its claims and its errata.
-//!
-//! After this file the reader knows in which order a paper is shown, and which published figure stands beside which computed one.
+//! The page of one paper: its scenarios in figures, its tables beside the computed ones, its claims and its errata.
 
 use super::content::{Content, OfPaper};
 use super::table::{framed, table};
@@ -31,8 +29,8 @@ pub fn page(of_paper: &OfPaper, content: &Content) -> Result<Markup, NotDrawn> {
         h1 id=(key) { (key) ": " (specification.paper.title) }
         (citation(&specification.paper))
         p {
-            a href=(format!("#{key}-claims")) { "what it claims" } " · " a href=(format!("#{key}-figures")) { "what it simulates" } " · "
-            a href=(format!("#{key}-errata")) { "what is wrong as printed" } " · " a href=(format!("#book-{key}")) { "its equations" }
+            a href=(format!("#{key}-claims")) { "claims" } " · " a href=(format!("#{key}-figures")) { "simulations" } " · "
+            a href=(format!("#{key}-errata")) { "misprints" } " · " a href=(format!("#book-{key}")) { "equations" }
         }
         (ledger::section(of_paper))
         section aria-labelledby=(format!("{key}-figures")) {
@@ -75,7 +73,7 @@ fn simulation(paper: Paper, reproductions: &[Reproduction]) -> Result<Markup, No
         (consistency(main))
         @if reproductions.len() > 1 {
             details {
-                summary { "Each open choice by itself, the others at their defaults" }
+                summary { "One open choice at a time, the others at their defaults" }
                 (alternatives(paper, reproductions))
             }
         }
@@ -129,7 +127,7 @@ fn side_by_side(published: &PublishedTable, comparisons: &[SideBySide]) -> Marku
     )
 }
 
-/// The rows of one quantity, a filter a row.
+/// The rows of one quantity, one row per filter.
 fn rows_of(comparisons: &[SideBySide]) -> Markup {
     html! {
         @for (place, comparison) in comparisons.iter().enumerate() {

@@ -1,7 +1,6 @@
-//! A table that can be scrolled where the screen is narrow, and read aloud.
+//! A table that scrolls on a narrow screen and can be read aloud.
 //!
-//! After this file the reader knows how every table of the page is marked up: a caption, headers with their scope, and a region that takes
-//! the keyboard's focus so that it can be scrolled without a mouse.
+//! It has a caption, headers with their scope, and a region that takes the keyboard focus, so that it scrolls without a mouse.
 
 use maud::{Markup, html};
 
