@@ -38,7 +38,7 @@ done
 (cd tests && "$work/user/bin/python" -m pytest -q -p no:cacheprovider)
 "$work/tools/bin/mypy" --strict --python-executable "$work/user/bin/python" --ignore-missing-imports --cache-dir "$work/mypy" immaculate
 
-# Whoever builds from source has everything that Cargo reads.
+# A build from source has everything that Cargo reads.
 "$work/tools/bin/maturin" sdist --out "$work/source" 2>&1 | tail -n 1
 tar -xzf "$work"/source/*.tar.gz -C "$work/source"
 (cd "$work"/source/*/python && cargo metadata --locked --format-version 1 >/dev/null)

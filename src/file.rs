@@ -1,9 +1,8 @@
-//! Files: read within a bound, written whole or not at all, told apart by a digest, and quoted in short.
+//! Files: bounded reading, atomic writing, digests, and short quotations.
 //!
-//! After this file the reader knows what the program promises of every file that it reads or writes, whatever happens meanwhile. What is
-//! read has a greatest length, so that no file and no pipe without an end fills the memory. What is written stands in a temporary file
-//! beside its place until all of it is on the disk, and takes its place in one step, so that whoever looks finds the old file or the new
-//! one, and after an interruption, too.
+//! Reading has a maximum length, so that no file and no endless pipe exhausts the memory. A file is written next to its destination first
+//! and moved into place in one step once all of it is on the disk. A reader therefore sees the old file or the new one, even after an
+//! interruption.
 
 use sha2::{Digest, Sha256};
 use std::fmt::Write as _;
@@ -130,7 +129,7 @@ pub fn digest(text: &str) -> String {
     digits
 }
 
-/// A text of at most so many characters: of a longer one its beginning and its end, between which an ellipsis stands.
+/// A text of bounded length: a longer one keeps its beginning and its end, with an ellipsis between them.
 pub fn shortened(text: &str, kept: usize) -> String {
     if text.chars().nth(kept).is_none() {
         return text.to_owned();

@@ -1,9 +1,8 @@
 //! Gaussian estimates: mean and covariance, the density of a residual, and the moments of a mixture.
 //!
-//! After this file the reader knows the three facts about Gaussians on which the interacting multiple model filter
-//! stands: how likely a residual is ([`log_density`]), and what mean and covariance a weighted mixture has
-//! ([`mixture_mean`], [`mixture_covariance`]). The mixture is replaced by one Gaussian with these two moments twice in a
-//! cycle: where the estimates are mixed, and where they are combined for output.
+//! The interacting multiple model filter rests on three facts about Gaussians: the likelihood of a residual ([`log_density`]), and the
+//! mean and covariance of a weighted mixture ([`mixture_mean`], [`mixture_covariance`]). Each cycle replaces a mixture by one Gaussian
+//! with the same two moments twice: once to mix the estimates, and once to combine them for output.
 //!
 //! ```text
 //! weights, (x̂ⁱ, Pⁱ) ─ mixture_mean ─▶ x̂ ─ mixture_covariance ─▶ P      several estimates become one

@@ -1,15 +1,15 @@
 //! Immaculate: the executable specification of the interacting multiple model filter.
 //!
-//! A target that now flies straight and now turns is tracked by several filters at once, one a *mode* of motion, that exchange what they
-//! know before every step. Four papers put fixed-gain, Kalman, cubature, unscented and converted-measurement filters inside it; every
-//! equation of theirs is one plain function here, under its printed number, in one number system or another. This is the book of these
-//! equations from the side of the code: each says what it is, in letters and in words of the code, why it holds, what an example by hand
-//! gives, what is printed wrongly, and which test is its evidence. The papers are `zhu2016`, `liu2017`, `derbez2000` and `sustika2015`;
-//! [`paper`] has their names and simulations.
+//! A target sometimes flies straight and sometimes turns. Several filters track it at once, one for each *mode* of motion, and mix their
+//! estimates before every step. Four papers use fixed-gain, Kalman, cubature, unscented and converted-measurement filters inside it. Each
+//! of their equations is one plain function here, labelled with its printed number and generic over the number system. This is the book
+//! of these equations, arranged by code. Each entry gives the formula in the papers' letters and in the names of the code, the reason why
+//! it holds, an example by hand, the misprints, and the tests that are its evidence. The papers are `zhu2016`, `liu2017`, `derbez2000`
+//! and `sustika2015`; [`paper`] has their names and simulations.
 //!
 //! # A step by hand
 //!
-//! Two modes, one that hardly moves and one that moves a lot; each is a filter with one state. The comments are the arithmetic:
+//! Two modes, one that hardly moves and one that moves a lot. Each filter has one state component. The comments show the arithmetic:
 //!
 //! ```
 //! use immaculate::filter::Filter;
@@ -57,28 +57,28 @@
 //!
 //! # The rooms, in reading order
 //!
-//! A room uses those above it and none below. The rooms without a feature are the specification: with `default-features = false` they
-//! are all there is. The oracle and the papers know nothing of each other; feature `cli` includes both, and is the default.
+//! A room uses only rooms above it. The rooms without a feature are the specification; `default-features = false` builds only these. The
+//! oracle and the papers do not use each other. The default feature, `cli`, includes both.
 //!
-//! | room           | what is in it                                                                      | feature           |
+//! | room           | contents                                                                           | feature           |
 //! |----------------|------------------------------------------------------------------------------------|-------------------|
 //! | [`number`]     | the number systems in which every equation is evaluated                            |                   |
 //! | [`matrix`]     | Cholesky and L D Lᵀ, for every number system                                       |                   |
 //! | [`gaussian`]   | moments of a mixture, density of a residual                                        |                   |
-//! | [`model`]      | how the target moves, what the sensor sees                                         |                   |
+//! | [`model`]      | motion of the target, measurement of the sensor                                    |                   |
 //! | [`rule`]       | cubature rules in exact form, their moments and degrees                            |                   |
 //! | [`filter`]     | one filter: Kalman, cubature, converted measurements, fixed gain                   |                   |
 //! | [`imm`]        | the cycle: a table of equations and the wiring that runs it                        |                   |
-//! | [`mod@file`]   | reading within a bound, writing whole or not at all                                | `oracle`, `paper` |
+//! | [`mod@file`]   | bounded reading, atomic writing                                                    | `oracle`, `paper` |
 //! | [`oracle`]     | certified cases, traces, and the judge of other filters                            | `oracle`          |
 //! | [`steady`]     | steady gains, Riccati and Lyapunov equations, joint stability and its certificates | `paper`           |
 //! | [`statistics`] | errors over runs, their uncertainty, consistency                                   | `paper`           |
 //! | [`paper`]      | the papers' simulations, published tables and claims, and their judges             | `paper`           |
 //! | [`book`]       | every equation with its code, derivation, errata, tests, mistakes and cases        | `cli`             |
-//! | [`report`]     | what is printed, and the page                                                      | `cli`             |
+//! | [`report`]     | printed text, figures and the site                                                 | `cli`             |
 //! | `cli`          | the commands of the program                                                        | `cli`             |
 //!
-//! Equations, filters and the cycle read no files, draw no random numbers and print nothing. Whoever wants the filter alone reads
+//! Equations, filters and the cycle read no files, draw no random numbers and print nothing. To read only the filter, read
 //! [`gaussian`], [`filter`] and [`imm`], in that order.
 //!
 //! # From a paper's section to its room
@@ -128,44 +128,44 @@
 //!
 //! # From a printed number to everything about it
 //!
-//! The first line of a doc comment ends with the numbers that its item realises, in one fixed form after a dash:
+//! The first line of a doc comment ends with the numbers of the equations that its item implements, in one fixed form after a dash:
 //! `zhu2016 (56), liu2017 (12)`, or `zhu2016 (14)-(20)` for several in a row. A search for
-//! `zhu2016 (56)` finds those that stand alone, here and in the source, and
+//! `zhu2016 (56)` finds single numbers, here and in the source, and
 //!
 //! ```text
 //! immaculate equation "zhu2016 56"
 //! ```
 //!
-//! shows the equation with its LaTeX, status and erratum, its function, its tests, the cases that judge it and the mistakes that are
-//! known. In its doc comment the parts have a fixed order:
+//! shows the equation with its LaTeX, status and erratum, its function, its tests, the cases that judge it and the known mistakes.
+//! The parts of its doc comment have a fixed order:
 //!
-//! | part       | what it says                                                                             |
+//! | part       | contents                                                                                 |
 //! |------------|------------------------------------------------------------------------------------------|
 //! | first line | the name, and the printed numbers                                                        |
 //! | formula    | in the papers' letters                                                                   |
 //! | table      | each letter, the name it has here, its shape or unit                                     |
-//! | `Why`      | the derivation; `Source` where it is printed nowhere                                     |
-//! | `Example`  | by hand, with exact numbers, and often what a famous mistake gives; all are run as tests |
-//! | `Errors`   | when there is no answer                                                                  |
+//! | `Why`      | the derivation; `Source` if no paper prints it                                           |
+//! | `Example`  | by hand, with exact numbers, and often the result of a famous mistake; all run as tests  |
+//! | `Errors`   | when there is no result                                                                  |
 //! | `Errata`   | what the papers print instead                                                            |
 //! | `Evidence` | the tests in `tests/`, and their kind: exact, symbolic, enclosed, property, consistency  |
 //!
-//! The way back, from code to paper: [`Quantity::equation`](imm::Quantity::equation) gives the numbers of a traced value, and every error
-//! of a run says which equation had no answer. `spec/` has every equation, erratum, open parameter and claim as data.
+//! The way back leads from code to paper: [`Quantity::equation`](imm::Quantity::equation) gives the equation numbers of a traced value,
+//! and every error of a run names the equation that had no result. `spec/` has every equation, erratum, open parameter and claim as data.
 //!
 //! # The command line
 //!
 //! | command                          | does                                                                             |
 //! |----------------------------------|----------------------------------------------------------------------------------|
 //! | `immaculate equation ID`         | shows an equation with its code, tests, cases and mistakes                       |
-//! | `immaculate report --out DIR`    | writes the whole specification and what its runs show as a static site           |
+//! | `immaculate report --out DIR`    | writes the whole specification and its results as a static site                  |
 //! | `immaculate reproduce`, `claims` | runs the papers' simulations beside their tables; judges their claims            |
-//! | `immaculate check -- COMMAND`    | judges a filter in any language: right to so many digits, or wrong where and why |
+//! | `immaculate check -- COMMAND`    | judges a filter in any language: whether it is right, or what is wrong and why  |
 //! | `immaculate cases`, `trace FILE` | the certified cases; every value of every step of a problem                      |
 //! | `immaculate variants`, `rule`    | the catalogue of mistakes, conventions and forms; points and weights of a rule   |
 //! | `immaculate stability`           | whether two fixed-gain filters are stable together, with a proof                 |
 //!
-//! Every command explains itself with `--help`.
+//! Every command has `--help`.
 
 pub mod filter;
 pub mod gaussian;

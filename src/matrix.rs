@@ -1,6 +1,6 @@
 //! Factorisations of symmetric positive definite matrices, for every number system.
 //!
-//! After this file the reader knows the two triangular factorisations that the filters use, and why there are two:
+//! The filters use two triangular factorisations, for two reasons:
 //!
 //! - [`cholesky`], P = S Sᵀ, needs square roots. The cubature filters draw their points with it.
 //! - [`ldl`], P = L D Lᵀ with a unit diagonal in L, needs only + − × ÷. Gains, log-determinants and quadratic forms come

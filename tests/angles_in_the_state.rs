@@ -1,7 +1,7 @@
 //! Goal: a filter with a heading in its state does not know where the circle is cut.
 //!
 //! Method: the same scene turned about the origin, so that the headings cross ±π or stay far from it, must have the same probabilities and
-//! the turned estimates; headings that are whole turns away are the same; and what averages headings as numbers is told so by name.
+//! the turned estimates; headings that are whole turns away are the same; and a program that averages headings as numbers is named.
 
 use immaculate::filter::Filter;
 use immaculate::gaussian::Gaussian;

@@ -123,7 +123,7 @@ fn every_equation_is_caught_by_a_case_or_says_why_none_can() {
     );
 }
 
-/// Who looks up an equation is told first what is done to it, and then what it may be given wrongly.
+/// An equation's entry lists first the mistakes in it, and then the wrong inputs that it may get.
 #[test]
 fn mistakes_of_reading_come_after_those_of_the_equation() {
     let has_both = |entry: &&Entry| {

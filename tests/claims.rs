@@ -1,4 +1,4 @@
-//! Goal: a verdict is what its differences say, and whoever changes a judge sees which figures and which verdicts move.
+//! Goal: a verdict is what its differences say, and a change of a judge shows which figures and which verdicts move.
 //!
 //! Method: the rules of verdicts by hand, case by case; judges on evidence that says the opposite; then every judge at a few runs, its
 //! evidence as a snapshot. Kinds of evidence: exact for the rules and the opposites, snapshots for the rest. A few runs decide little: what
@@ -652,7 +652,7 @@ fn a_judge_of_derbez2000_follows_the_runs() {
     }
 }
 
-/// Filters that are certain, in either coordinate, of what the target did so many steps before.
+/// Filters that are certain, in either coordinate, of what the target did some steps before.
 #[test]
 fn a_judge_of_delays_follows_the_mode_probabilities() {
     let runs = claims::CoordinateEvidence::new(EFFORT, &|| ()).unwrap();
@@ -688,7 +688,7 @@ fn exchanged(experiment: &Experiment, a: usize, b: usize) -> Experiment {
     exchanged
 }
 
-/// A filter that is certain, at each step, of what the target did so many steps before.
+/// A filter that is certain, at each step, of what the target did some steps before.
 fn late(experiment: &Experiment, filter: usize, steps: usize) -> Experiment {
     let mut late = experiment.clone();
     let (motions, filters) = (experiment.scenario.motions(), experiment.scenario.filters());
@@ -722,7 +722,7 @@ fn a_judge_of_zhu2016_follows_the_runs() {
     type Judge<E> = fn(&Specification, &E) -> JudgedClaim;
     let s = zhu2016();
     let printed = Experiment::new(with_kalman_filter().unwrap(), EFFORT, &|| ());
-    // The filter of one model, in the place of one with three, is another filter.
+    // The filter of one model, instead of one with three, is another filter.
     let [first, third_degree, unscented, single] = [0, 1, 2, 3];
     for (judge, filter) in [
         (linear_accuracy as Judge<Experiment>, first),

@@ -101,7 +101,7 @@ fn stability_proves_and_refutes() {
     succeeds(&["stability", "--interval", "1", "--certificate", file]);
     assert!(succeeds(&["stability", "--check", file]).ends_with("proven stable\n"));
     assert_eq!(json(&["stability", "--check", file, "--json"])["proves"], "stable");
-    // A slip of the pen, a proof of something else, and no certificate at all.
+    // An accidental edit, a proof of something else, and no certificate at all.
     let written = std::fs::read_to_string(&path).unwrap();
     std::fs::write(&path, written.replacen("\"1\"", "\"2\"", 1)).unwrap();
     assert!(refuses(&["stability", "--check", file], 2).contains("was changed after it was written"));

@@ -55,7 +55,7 @@ struct Noise {
     weight: Unknown,
     /// r̃.
     range: Unknown,
-    /// cos θ̃ and sin θ̃, each in the place of the other's expectation: the pairs are on no circle.
+    /// cos θ̃ and sin θ̃, each replaced by the other's expectation: the pairs are on no circle.
     turn: Vector2<Unknown>,
 }
 
@@ -203,7 +203,7 @@ fn the_moments_are_those_of_range_and_bearing() {
     assert_eq!(errors, about(&u, &mean_squared_errors(&f, &r2, &v, &w)));
     let parts = |range: &Unknown, direction: &Vector2<Unknown>| {
         let n = vector![-direction[1].clone(), direction[0].clone()];
-        // |u|² is one, also where the points in the place of a turn are not on the circle: r̂ is f r̂ u along u.
+        // |u|² is one, also where the points that replace a turn are not on the circle: r̂ is f r̂ u along u.
         let along = f.clone() * range.clone() - direction.dot(&middle());
         let across = n.dot(&middle());
         vector![squared(&along), squared(&across)]
@@ -465,7 +465,7 @@ fn errors_and_claims_are_those_of_runs() {
     const RUNS: u32 = 40_000;
     let mut generator = Generator::new(20_150_301, 0);
     for deviation in [0.02, 0.3_f64] {
-        // ρ = 1 with σ_r = 1 m, and the target at an angle that is none of the axes.
+        // ρ = 1 with σ_r = 1 m, and the target at an angle off the axes.
         let (s, rho, bearing) = (deviation * deviation, 1.0, 0.7_f64);
         let range = rho / s;
         let u = vector![bearing.cos(), bearing.sin()];

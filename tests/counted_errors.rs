@@ -109,7 +109,7 @@ fn results_beside_the_middle_of_two_neighbours_are_inside() {
             for _ in 0..8 {
                 let odd = Rational::integer(i64::from(generator.next_u32() >> 9) * 2 + 1);
                 let leading = power(exponent - 1);
-                // From 2ᵉ⁻¹ on, so many last bits and a half.
+                // From 2ᵉ⁻¹ on, this many last bits and a half.
                 let middle = leading + odd * power(last - 1);
                 for halves in -6..=6 {
                     let wanted = &middle + &step * Rational::integer(halves);

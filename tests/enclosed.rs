@@ -256,7 +256,7 @@ fn power_of_two(exponent: i32) -> f64 {
     2.0_f64.powi(exponent)
 }
 
-/// Runs a law so many times, each with its precision.
+/// Runs a law a number of times, each with its precision.
 fn repeat(seed: u64, times: u32, mut law: impl FnMut(&mut Draw)) {
     let mut draw = Draw::new(seed);
     for _ in 0..times {

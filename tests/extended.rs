@@ -18,7 +18,7 @@ use immaculate::rule::RuleName;
 use nalgebra::{Matrix2, U2, matrix, vector};
 use serde_json::{Value, json};
 
-/// A walk along a curve, and what is seen of it.
+/// A walk along a curve, and its measurements.
 fn curved(filter: Filter<f64, U2, U2>, width: f64) -> (Problem<f64, U2, U2>, Initial<f64, U2>) {
     let curve = [("x", "x + 0.3*sin(y)"), ("y", "y + 0.1*x*y")];
     let function = Function::of_formulas(&["x", "y"], &[], &[], &[], &curve).unwrap();

@@ -44,7 +44,7 @@ fn the_colours_of_filters_stand_out_on_white_and_on_a_dark_ground() {
             assert!(ratio >= 3.0, "{} on {ground:?}: {ratio}", hexadecimal(*colour));
         }
     }
-    // The scale ends where it should, and grey on white is told from ink.
+    // The scale ends where it should, and grey on white differs from ink.
     assert!((contrast([0; 3], [255; 3]) - 21.0).abs() < 1e-9);
 }
 

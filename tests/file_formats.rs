@@ -1441,7 +1441,7 @@ fn every_case_is_proven_again() {
 }
 
 /// The proof notices one digit of any line of a trace, be it value, scale or noise.
-/// The digits that an enclosure has left are told in the unit of its value: in units of 2⁻⁴⁰ m every width is 2⁴⁰ times as large, and so is
+/// The digits left to an enclosure are given in the unit of its value: in units of 2⁻⁴⁰ m every width is 2⁴⁰ times as large, and so is
 /// every unit.
 #[test]
 fn the_digits_that_are_left_do_not_depend_on_the_units() {
@@ -1554,7 +1554,7 @@ fn another_sample_of_the_noise_is_accepted_and_another_noise_is_not() {
         assert!(matches!(refused, Err(BadCase::Noise { .. })), "{factor}: {refused:?}");
     }
     assert!(published(&|_| 2.0).verify().is_ok());
-    // One number eight times as large is another sample; fifty times as large it is none of this noise.
+    // One number eight times as large is another sample; fifty times as large it is not this noise.
     let one = |factor: f64| move |place| if place == (1, Quantity::Gain, 0) { factor } else { 1.0 };
     assert!(published(&one(8.0)).verify().is_ok());
     assert!(matches!(published(&one(50.0)).verify(), Err(BadCase::Differs { .. })));

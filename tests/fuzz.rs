@@ -450,7 +450,7 @@ fn certificate_law(text: &str) -> bool {
     true
 }
 
-/// The digest tells a slip of the pen and is no lock: whoever changes a proof can write it anew.
+/// The digest detects accidental edits and is not a lock: anyone who changes a proof can write a new one.
 fn with_digest(text: &str) -> String {
     let Ok(mut tree) = serde_json::from_str::<Value>(text) else {
         return text.to_owned();

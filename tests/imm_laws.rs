@@ -689,7 +689,7 @@ fn the_answer_does_not_depend_on_where_the_bearing_is_cut() {
             };
             assert!(apart(&turned) <= allowed, "{rule}: {}", apart(&turned));
 
-            // A bearing that is told a turn away is the same bearing.
+            // A bearing that is given a turn away is the same bearing.
             let mut a_turn_away = turned.clone();
             for z in a_turn_away.measurements.iter_mut().flatten() {
                 z[1] += if z[1] < 0.0 { 2.0 * PI } else { -2.0 * PI };
@@ -1515,7 +1515,7 @@ fn sides_known_at_run_time_give_the_same_bits_with_four_entries() {
     }
 }
 
-/// The same with n = 8: position, velocity, acceleration and jerk along two axes. Products of so many columns are where a library of
+/// The same with n = 8: position, velocity, acceleration and jerk along two axes. Products of this many columns are where a library of
 /// matrices sums plain doubles in an order of its own, and so only random rounding has the same bits. The second mode lacks the jerk, and
 /// knows it exactly.
 #[test]
@@ -1754,7 +1754,7 @@ fn with_modes(scene: &Scene, order: &[usize]) -> Scene {
     other
 }
 
-/// The scene with the left turn in the place of every mode, under the same names of places, and one start for all.
+/// The scene with the left turn instead of every mode, under the same names of places, and one start for all.
 fn with_identical_modes(scene: &Scene) -> Scene {
     let mut other = scene.clone();
     for j in 0..3 {
@@ -1803,7 +1803,7 @@ where
     for quantity in Quantity::ALL {
         let modes = if quantity.is_of_mode() { step.updated.len() } else { 1 };
         for j in 0..modes {
-            // A value that is not there is told from one that is: its shape is a number too.
+            // A value that is absent differs from one that is present: its shape is a number too.
             let values = step.values(quantity, j).unwrap_or_default();
             numbers.push(T::integer(i64::try_from(values.len()).unwrap()));
             numbers.extend(values);
@@ -1826,7 +1826,7 @@ where
 fn bits_of_mode(step: &Step<f64, U4, U2>, j: usize) -> Vec<u64> {
     let mut all = Vec::new();
     for quantity in Quantity::ALL {
-        // Mixing probabilities are told by the place of every other mode.
+        // Mixing probabilities are read off the place of every other mode.
         if quantity.is_of_mode() && quantity != Quantity::MixingProbabilities {
             let values = step.values(quantity, j).unwrap_or_default();
             all.push(values.len() as u64);

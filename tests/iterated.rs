@@ -23,7 +23,7 @@ fn read(problem: &Value) -> ProblemFile {
     ProblemFile::read(&problem.to_string()).unwrap()
 }
 
-/// The same problem with so many linearisations in every mode.
+/// The same problem with a number of linearisations in every mode.
 fn iterated(problem: &Value, times: usize) -> Value {
     let mut other = problem.clone();
     other["format"] = json!("immaculate-problem/2");

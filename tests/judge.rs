@@ -40,7 +40,7 @@ fn an_error_of_a_hundred_noises_is_right_and_one_of_more_is_not() {
         scene.shown.set(MEAN.0, MEAN.1, MEAN.2, vec![2.0 + error * tiny]);
         let judged = scene.judged(MEAN);
         assert_eq!(judged.finding, finding, "{error}");
-        // The error is told in units.
+        // The error is given in units.
         assert_eq!(judged.error, error.abs() * tiny / 4.0);
     }
 }
@@ -334,7 +334,7 @@ fn an_explanation_leaves_no_error_of_more_than_a_hundred_noises() {
     assert!(scene.case().is_explained_by(&[], &passed).unwrap());
 }
 
-/// The triangles of a covariance that a prediction is made from are apart by so many units, and so is the noise of the prediction: where
+/// The triangles of a covariance that a prediction is made from differ by this many units, and so does the noise of the prediction: where
 /// that is as large as a unit it would excuse anything, and a form is no excuse. Nor is it one for what is not finite.
 #[test]
 fn a_form_excuses_rounding_and_nothing_that_runs_away() {
@@ -751,7 +751,7 @@ fn of_pairs_those_with_fewer_mistakes_are_named() {
     );
 }
 
-/// Mistakes of different filters cannot be told from one another by equations, and by pairs less clearly.
+/// Equations cannot distinguish mistakes of different filters, and pairs even less.
 #[test]
 fn where_the_filters_of_a_program_have_different_mistakes_each_is_told_its_own() {
     let kalman = |variants: &[&str]| Scene::planted(&lively("linear", "kalman"), variants);
@@ -851,7 +851,7 @@ fn what_no_output_depends_on_is_no_fault() {
 }
 
 /// With S = ¼ + ¼ + ½ = 1, whose logarithm is zero, a log-likelihood without 2π may be one that was not normalised at all, which is a
-/// mistake. Who may have a convention is not told of it.
+/// mistake. A program that may have a convention gets no report of it.
 #[test]
 fn what_may_be_a_convention_is_not_called_a_mistake() {
     let problem = unit_innovation_covariance();

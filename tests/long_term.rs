@@ -562,7 +562,7 @@ fn predicted(setting: &Setting, form: Algorithm) -> LongTerm {
     predict(setting, form).unwrap()
 }
 
-/// The mean of the simulated total error over so many runs, and its standard error.
+/// The mean of the simulated total error over a number of runs, and its standard error.
 fn mean_total(setting: &Setting, runs: u64) -> (f64, f64) {
     let totals: Vec<f64> = (0..runs)
         .map(|run| simulated(setting, Start::AtTheTruth, run).total())

@@ -115,7 +115,7 @@ fn every_value_that_is_a_little_off_is_a_fault() {
     assert!(asked > 400, "{asked}");
 }
 
-/// An extended filter of one mode over so many steps, written without anything that speaks of modes.
+/// An extended filter of one mode over a number of steps, written without mentioning modes.
 fn long(steps: usize) -> Value {
     let measurements: Vec<Value> = (1..=steps)
         .map(|step| {

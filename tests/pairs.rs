@@ -25,10 +25,10 @@ const CASES: [&str; 7] = [
     "wrap.clockwise",
 ];
 
-/// So many pairs.
+/// The number of pairs.
 const PAIRS: usize = 50;
 
-/// At least so many of them are named.
+/// At least this many of them are named.
 const NAMED: usize = 45;
 
 fn values(id: &str, planted: &[&str]) -> Trace {

@@ -455,7 +455,7 @@ fn printed_likelihood_is_a_density_for_scalar_measurements_only() {
 fn without_noise_in_the_gain_calculation_the_mismatched_error_is_not_bounded() {
     let h = position_matrix::<f64>();
     let motion = embedded_constant_velocity(&1.0);
-    // The mean error after so many steps of a constant velocity filter that assumes `noise`, on a target with unit acceleration.
+    // The mean error after a number of steps of a constant velocity filter that assumes `noise`, on a target with unit acceleration.
     let error_after = |steps: usize, noise: f64| {
         let noise = response_noise(&embedded_velocity_response(&1.0), &noise);
         let (mut covariance, mut error) = (Matrix3::identity(), Vector3::<f64>::zeros());

@@ -24,7 +24,7 @@ use std::f64::consts::PI;
 /// The unit roundoff of a double: no operation is off by more than this part of its result.
 const ROUNDOFF: f64 = f64::EPSILON / 2.0;
 
-/// Proptest with so many cases; failures are printed, not written to a file.
+/// Proptest with a number of cases; failures are printed, not written to a file.
 fn cases(cases: u32) -> ProptestConfig {
     ProptestConfig {
         cases,
@@ -671,7 +671,7 @@ fn rules_in_doubles<const N: usize>() -> Vec<(&'static str, usize, Rule<f64, Con
         .collect()
 }
 
-/// Random Gaussians and forms in N dimensions, so many, through the rules in doubles.
+/// A number of random Gaussians and forms in N dimensions, through the rules in doubles.
 fn check_rules_in_doubles<const N: usize>(count: u32) {
     let rules = rules_in_doubles::<N>();
     proptest!(cases(count), |(drawn in gaussian_and_forms::<N>(0..=5))| {
@@ -841,7 +841,7 @@ proptest! {
         prop_assert!(at_most(least, mean) && at_most(mean, rms) && at_most(rms, greatest));
         // The root of the sum of squares is between the worse coordinate and the sum.
         prop_assert!(at_most(greatest, rss) && at_most(rss, sum) && at_most(sum, 2.0_f64.sqrt() * rss));
-        // With one coordinate left out they are told apart.
+        // With one coordinate left out they differ.
         let one = [errors[0].clone(), vec![0.0; errors[1].len()]];
         let [rss, joint, rms, mean, sum] = FitForm::ALL.map(|form| fit(form, &one, &truth));
         prop_assert!(equal(rss, axes[0]) && equal(sum, axes[0]) && equal(2.0 * mean, axes[0]) && rms > mean);

@@ -1,4 +1,4 @@
-//! Goal: random rounding perturbs what rounding perturbs, as much as it is told to, and nothing else.
+//! Goal: random rounding perturbs what rounding perturbs, by the given amount, and nothing else.
 //!
 //! Method: laws of the noise on drawn numbers and on sums whose spread is known. Kind of evidence: property. The generator is named and
 //! seeded, so that a statistic either is within its bounds or is not.

@@ -136,7 +136,7 @@ fn forbidden(path: &str, text: &str, table: &[Room]) -> Vec<String> {
 /// The rooms that the paths of a file lead to.
 fn rooms_used(path: &str, text: &str) -> Vec<String> {
     let inside = path.trim_start_matches("src/").trim_end_matches(".rs");
-    // So many times `super` leads from the file to the root of its crate.
+    // This many times `super` leads from the file to the root of its crate.
     let depth = inside.trim_end_matches("/mod").split('/').count();
     let mut used = BTreeSet::new();
     collect(text.parse().unwrap(), depth, path.starts_with("src/cli"), &mut used);

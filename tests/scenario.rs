@@ -1,4 +1,4 @@
-//! Goal: whoever changes the program sees what the change does to the papers' figures.
+//! Goal: a change of the program shows its effect on the papers' figures.
 //!
 //! Method: snapshots of short experiments, rounded, with units. Kind of evidence: snapshot, the weakest there is. It says what the
 //! program answers and not whether that is right; it is for people who compare it with the published tables, and with what stood

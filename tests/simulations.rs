@@ -440,7 +440,7 @@ fn a_simulation_says_whose_it_is_and_who_competes() {
         let filters = simulation.filters();
         let names = filters.iter().map(|filter| (filter.name.as_str(), filter.modes.len()));
         assert_eq!(names.collect::<Vec<_>>(), competitors);
-        // What runs is what is said: so many filters, and one probability a mode.
+        // What runs is what is said: the number of filters, and one probability for each mode.
         let runs = simulation.one_run(0, 1);
         assert_eq!(runs.len(), filters.len());
         for (run, filter) in runs.iter().zip(&filters) {
@@ -1090,7 +1090,7 @@ fn variances(scenario: &Scenario) -> [f64; 2] {
     let first = noise(&scenario.contestants[0]);
     assert!(scenario.contestants.iter().all(|contestant| noise(contestant) == first));
     assert_eq!(first[(0, 1)], 0.0);
-    // The noise that is drawn is the noise that the filters are told, but for a root and a square.
+    // The noise that is drawn is the noise that the filters assume, except for a root and a square.
     let drawn = scenario.measurement_deviations.map(|deviation| deviation * deviation);
     assert_eq!(drawn, first.diagonal());
     // A printed variance is its root squared: twice rounded.
@@ -1190,7 +1190,7 @@ fn falls(k: i32, sign: f64) -> Vector3<f64> {
     Vector3::new(2.5 * time * time, 5.0 * time, 5.0) * sign
 }
 
-/// Whether the turn is one by so many degrees, and at the rate that its acceleration says.
+/// Whether the turn has this angle in degrees, and the rate that its acceleration gives.
 fn turned(scenario: &derbez2000::scenario::CoordinateScenario, degrees: f64) -> bool {
     let turning: Vec<usize> = (0..scenario.path.motions.len())
         .filter(|k| scenario.path.motions[*k] == Regime::Turn)

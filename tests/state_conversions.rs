@@ -2,7 +2,7 @@
 //!
 //! Method: one problem in two coordinate systems must have the same certified digits; identity conversions are no conversions, to the bit;
 //! a sensor that is composed by hand sees what the filter composes; Jacobians are difference quotients; a turned scene has the turned
-//! answer wherever its heading is cut; what is forgotten of a conversion is told by name, and what is wrong with one in a sentence.
+//! answer wherever its heading is cut; a forgotten part of a conversion is named, and a wrong conversion is refused in a sentence.
 
 use immaculate::filter::Filter;
 use immaculate::filter::extended::motion_jacobian;

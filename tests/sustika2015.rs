@@ -1,6 +1,6 @@
 //! Goal: the simulations of sustika2015 are what they say, and so is the table that a sweep writes.
 //!
-//! Method: laws of the truth, of what is seen of it and of the filters' parts; statistics of many runs with a fixed seed and a stated
+//! Method: laws of the truth, of its measurements and of the filters' parts; statistics of many runs with a fixed seed and a stated
 //! probability of a false alarm; and a table that is read back. Kind of evidence: property, and
 //! statistical where it is said. What the simulations show is `tests/scenario.rs` and the claims.
 

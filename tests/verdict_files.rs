@@ -1,4 +1,4 @@
-//! Goal: what a verdict becomes outside of the terminal says what the verdict says, and can be read by whoever takes such files: readers of
+//! Goal: the files of a verdict say what the verdict says, and can be read by the programs that take them: readers of
 //! JUnit, of Markdown, of HTML and of SVG.
 //!
 //! Method: this crate's own filter is checked as it is, with mistakes, with other forms, and with words that are markup; each file is read
@@ -406,7 +406,7 @@ fn a_check_without_a_program_shows_what_a_verdict_is() {
     let shown = checked(&["--case", "step.n4-m2"], "mixed-spread-omitted");
     assert!(text.contains("--case step.n4-m2 -- immaculate answer --plant mixed-spread-omitted"));
     assert!(text.contains(&String::from_utf8(shown.stdout).unwrap()));
-    // A script whose program is an empty variable has nothing checked, and is told so. Whoever asks for something more meant a program.
+    // A script whose program is an empty variable gets an error instead of a check. More arguments mean that a program was intended.
     for more in [
         &["--json"][..],
         &["--strict"],

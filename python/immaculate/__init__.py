@@ -1,4 +1,4 @@
-"""Is your Kalman filter right and, if not, which equation is wrong?
+"""Is your Kalman filter right? If not, which equation is wrong?
 
     import immaculate
 
@@ -6,8 +6,8 @@
     print(verdict)
     verdict.raise_if_wrong()
 
-`MyFilter` is called with a `Problem` and makes a filter, which is then asked step by step: either `step(z)`, which returns a
-dictionary of what it shows, or, for one filter without modes, `predict()` and `update(z)` with the attributes `x` and `P`. See `check`.
+`MyFilter` is called with a `Problem` and returns a filter, which then runs step by step: either through `step(z)`, which returns a
+dictionary of values, or, for a single filter, through `predict()` and `update(z)` with the attributes `x` and `P`. See `check`.
 """
 
 from immaculate._check import Rejected, Skip, check

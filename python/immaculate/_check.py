@@ -1,4 +1,4 @@
-"""`check`: a filter is asked problems, and what it shows is judged."""
+"""`check`: runs a filter on problems and judges its values."""
 
 import json
 import os
@@ -20,11 +20,11 @@ _HERE = os.path.dirname(os.path.abspath(__file__))
 
 
 class Skip(Exception):
-    """Raised by a filter that does not do a problem: why."""
+    """Raised by a filter that cannot do a problem, with the reason."""
 
 
 class Rejected(Exception):
-    """Raised by a filter that refuses a problem, with `check(…, validates=True)`: the class of spec/formats.md, and why."""
+    """Raised by a filter that rejects a problem, with `check(…, validates=True)`: the class of spec/formats.md, and the reason."""
 
     def __init__(self, reason_class: str, reason: str):
         super().__init__(reason)
@@ -32,7 +32,7 @@ class Rejected(Exception):
 
 
 class _NotAFilter(TypeError):
-    """What was given to `check` makes something that is no filter."""
+    """The object given to `check` does not make a filter."""
 
 
 def check(
@@ -47,31 +47,31 @@ def check(
     validates: bool = False,
     name: Optional[str] = None,
 ) -> Verdict:
-    """Judges a filter: right to so many digits, or wrong in which equation, at which step, and most likely why.
+    """Judges a filter: whether it is right and to how many digits, or which equation is wrong, at which step, and most likely why.
 
-    filter       a class or function, called with a `Problem` for each case, that makes a filter at step 0. It has either
+    filter       a class or function, called with a `Problem` for each case, that returns a filter at step 0. The filter has either
 
-                 * `step(z)`, z being (m,) or None at a missed detection, which returns a dictionary of what it shows: any of the
-                   keys of a trace, e.g. {"modes": [{"predicted": {"mean": …, "covariance": …}, "gain": …}, …], "combined": {…}}.
-                   Where there is one mode, the keys of the mode may stand beside the rest. A key that is absent or None is not shown.
-                 * or, for one filter without modes, `predict()` and `update(z)` and the attributes `x` and `P`: these are shown as
-                   `predicted` after the one and as `updated` and `combined` after the other, which is not called without a detection.
+                 * `step(z)`, with z of shape (m,) or None at a missed detection. It returns a dictionary with any of the keys of a
+                   trace, e.g. {"modes": [{"predicted": {"mean": …, "covariance": …}, "gain": …}, …], "combined": {…}}. With one mode,
+                   the keys of the mode may stand beside the rest. A key that is absent or None is not shown.
+                 * or, for a single filter, `predict()` and `update(z)` with the attributes `x` and `P`. These are read as `predicted`
+                   after the first and as `updated` and `combined` after the second, which is not called at a missed detection.
 
-                 With `change(step)` it is asked problems whose steps differ, too: it is called before a step whose models are others
-                 than those before, with the `Step`; without it such problems are skipped. It may raise `Skip`.
+                 `change(step)` is optional and may raise `Skip`. It is called with the `Step` before every step whose models differ
+                 from the previous ones. Without it, problems whose steps differ are skipped.
     kinds        which filters it has: "kalman", "extended", "unscented", the name of a rule such as "cubature-3", "converted",
                  "fixed-gain", "fixed-gain-unmixed"; other cases are not asked. Default: all
     cases        ids, or beginnings of ids, of published cases. Default: all
-    flags        words of which a case must have one
-    problems     problems of your own in place of the published cases: `Problem`, dictionaries, or paths of JSON files
+    flags        a case must have one of these words
+    problems     your own problems instead of the published cases: `Problem`, dictionaries, or paths of JSON files
     precision    "double" or "single"
     conventions  where yours differ from the cases', e.g. {"square_root": "symmetric"}
-    validates    whether it refuses problems that are wrong, by raising `Rejected`: then it is asked some. Their attributes are not there;
-                 `Problem.to_dict()` is
-    name         what it is called in the verdict
+    validates    whether it rejects wrong problems by raising `Rejected`; it is then asked some. These have no attributes, only
+                 `Problem.to_dict()`
+    name         its name in the verdict
 
-    What the filter raises is its answer, with the traceback in the verdict, and the check goes on; KeyboardInterrupt ends it.
-    Raises ValueError where the check cannot be made: a kind, a convention or a problem is wrong, or no case is left.
+    An exception of the filter is its answer, with the traceback in the verdict, and the check continues; KeyboardInterrupt ends it.
+    Raises ValueError if the check is impossible: a kind, a convention or a problem is wrong, or no case is left.
     """
     ready = {
         "name": name or getattr(filter, "__name__", type(filter).__name__),
@@ -104,14 +104,14 @@ def _text(problem: Union[Problem, Mapping[str, Any], str, os.PathLike[str]]) -> 
 
 
 class _Asked:
-    """The program under test as the extension asks it."""
+    """The program under test, as the extension calls it."""
 
     def __init__(self, make: Callable[[Problem], Any], ready: dict[str, Any]):
         self._make, self._ready = make, ready
         self.tracebacks: dict[str, str] = {}
 
     def ready(self) -> str:
-        """What it says of itself."""
+        """Its introduction."""
         return json.dumps({"type": "ready", **self._ready})
 
     def run(self, native: _immaculate.Problem) -> str:
@@ -152,7 +152,7 @@ class _Asked:
 
 
 def _problem(native: _immaculate.Problem) -> Problem:
-    """The problem; of one that must be rejected, what can be had of it: its file."""
+    """The problem; for one that must be rejected, only its file."""
     try:
         return Problem(native)
     except ValueError:
@@ -162,7 +162,7 @@ def _problem(native: _immaculate.Problem) -> Problem:
 
 
 def _step_of(made: Any, problem: Problem) -> Callable[[Any, Reader], dict[str, Any]]:
-    """How a filter does a step, and what is shown of it."""
+    """How a filter does a step, and the values that it shows."""
     if callable(getattr(made, "step", None)):
         return lambda z, reader: reader.read(made.step(z))
     if all(callable(getattr(made, verb, None)) for verb in ("predict", "update")) and hasattr(made, "x"):
@@ -176,7 +176,7 @@ def _step_of(made: Any, problem: Problem) -> Callable[[Any, Reader], dict[str, A
 
 
 def _predict_and_update(made: Any, z: Optional[np.ndarray[Any, Any]], reader: Reader) -> dict[str, Any]:
-    """A step of one filter. What is shown is read at once: the update may overwrite it."""
+    """A step of a single filter. Values are read at once, because the update may overwrite them."""
     made.predict()
     shown = reader.read({"predicted": {"mean": made.x, "covariance": getattr(made, "P", None)}})
     if z is not None:
@@ -193,7 +193,7 @@ def _traceback(error: BaseException) -> str:
 
 
 def _sentence(error: BaseException) -> str:
-    """What was raised and where, in a line."""
+    """The exception and its place, in a line."""
     frames = traceback.extract_tb(_authors(error.__traceback__))
     where = f" ({os.path.basename(frames[-1].filename)}, line {frames[-1].lineno}, in {frames[-1].name})" if frames else ""
     said = " ".join(str(error).split())
@@ -201,7 +201,7 @@ def _sentence(error: BaseException) -> str:
 
 
 def _authors(frames: Optional[TracebackType]) -> Optional[TracebackType]:
-    """A traceback without its first frames, which are of this package."""
+    """A traceback without its first frames, which belong to this package."""
     while frames is not None and os.path.dirname(os.path.abspath(frames.tb_frame.f_code.co_filename)) == _HERE:
         frames = frames.tb_next
     return frames

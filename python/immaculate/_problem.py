@@ -1,6 +1,6 @@
-"""Problems as arrays: what a filter is given.
+"""Problems as arrays: the inputs of a filter.
 
-All arrays are doubles and your own: whoever writes into them changes nothing else. n is the number of entries of the state, m that of the
+All arrays are doubles and your own: writing into them changes nothing else. n is the number of entries of the state, m that of the
 measurement, r that of the modes. Units are those of the problem's `units`; angles are in radians.
 """
 
@@ -44,16 +44,16 @@ class Mode:
         self.Q: Array = np.array(entry["Q"], dtype=float)
 
     def f(self, x: ArrayLike) -> Array:
-        """f at the state x, (n,), by the crate's own formulas. Linear motions have it, too."""
+        """f at the state x, (n,), by the crate's own formulas, also for linear motions."""
         return np.array(self._native.motion(*self._at, _numbers(x)))
 
     def f_jacobian(self, x: ArrayLike) -> Array:
-        """∂f/∂x at the state x, (n, n): row i holds the slopes of entry i."""
+        """∂f/∂x at the state x, (n, n): row i holds the derivatives of entry i."""
         return np.array(self._native.motion_jacobian(*self._at, _numbers(x)))
 
 
 class Models:
-    """What a step is predicted and measured with.
+    """The models of a step.
 
     modes            a list of r `Mode`
     transition       (r, r): [i, j] is P(mode j at k | mode i at k−1)
@@ -84,16 +84,16 @@ class Models:
         return len(self.R)
 
     def h(self, x: ArrayLike) -> Array:
-        """h at the state x, (m,), by the crate's own formulas. Linear measurements have it, too."""
+        """h at the state x, (m,), by the crate's own formulas, also for linear measurements."""
         return np.array(self._native.measurement(self._step, _numbers(x)))
 
     def h_jacobian(self, x: ArrayLike) -> Array:
-        """∂h/∂x at the state x, (m, n): row i holds the slopes of entry i."""
+        """∂h/∂x at the state x, (m, n): row i holds the derivatives of entry i."""
         return np.array(self._native.measurement_jacobian(self._step, _numbers(x)))
 
 
 class Step(Models):
-    """A step, with the models that hold in it.
+    """A step, with its models.
 
     number   k, counted from 1
     z        (m,), the measurement; None at a missed detection
@@ -110,7 +110,7 @@ class Step(Models):
 
 
 class Problem(Models):
-    """A problem: models, the estimate at step 0, and measurements. Its own models hold in every step that has no others.
+    """A problem: models, the estimate at step 0, and measurements. Its models hold in every step that does not replace them.
 
     id, about, flags    its name, what it is for, and that in words of a list
     n, r                entries of the state, and modes
@@ -148,12 +148,12 @@ class Problem(Models):
 
     @property
     def steps(self) -> list[Step]:
-        """The steps, made anew each time."""
+        """The steps, as new objects each time."""
         return [Step(self._native, k + 1) for k in range(len(self._file["measurements"]))]
 
     @property
     def kind(self) -> str:
-        """The kind of its filter, where all modes have one kind."""
+        """The kind of its filter, if all modes have the same kind."""
         if len(self.kinds) != 1:
             raise ValueError(f"{self.id}: the modes have filters of several kinds: {', '.join(self.kinds)}; see `filters`")
         return self.kinds[0]
@@ -168,7 +168,7 @@ class Problem(Models):
 
     @classmethod
     def from_file(cls, path: Union[str, os.PathLike[str]]) -> "Problem":
-        """A problem from a JSON file. Raises ValueError with the file and the place of what is wrong."""
+        """A problem from a JSON file. Raises ValueError with the file and the place of an error."""
         try:
             return cls(_immaculate.Problem.read(Path(path).read_text(encoding="utf-8-sig")))
         except ValueError as error:
@@ -180,7 +180,7 @@ class Problem(Models):
         return file
 
     def of_mode(self, j: int) -> "Problem":
-        """The problem of mode j alone, with all measurements: for one filter without modes.
+        """The problem with mode j only and all measurements, for a single filter.
 
         Its id is ID.mode-J; it is not published, and `check(…, problems=[…])` certifies it first.
         """
@@ -203,7 +203,7 @@ class Problem(Models):
 
 
 def _plain(value: Any) -> Any:
-    """An array, or a number of numpy, as JSON knows it."""
+    """An array or a numpy number as plain JSON."""
     if isinstance(value, (np.ndarray, np.generic)):
         return value.tolist()
     raise TypeError(f"a {type(value).__name__} cannot stand in a problem")

@@ -8,7 +8,7 @@ from immaculate import _immaculate
 
 
 def main() -> NoReturn:
-    """Does what the arguments ask for, and ends with the exit status of the crate's program."""
+    """Runs the command in the arguments, and ends with the exit status of the crate's program."""
     # No Python runs until the end, so that Python's own way to be interrupted would never be taken.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     sys.exit(_immaculate.command_line(["immaculate", *sys.argv[1:]]))

@@ -1,4 +1,4 @@
-"""What is certified: the published cases, traces and rules."""
+"""Certified data: the published cases, traces and rules."""
 
 import json
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from immaculate._problem import Array, Problem
 
 
 def cases(kind: Optional[str] = None, flag: Optional[str] = None) -> list[Problem]:
-    """The published cases, those that a filter must reject left out; with `kind`, of those filters alone; with `flag`, of those marked so.
+    """The published cases, without those that a filter must reject; `kind` and `flag` select cases for one filter or with one flag.
 
     Every one has its certified trace: `immaculate.trace(problem)` looks it up.
     """
@@ -29,10 +29,10 @@ def cases(kind: Optional[str] = None, flag: Optional[str] = None) -> list[Proble
 class Trace:
     """A certified trace: every number is the double nearest to the exact value.
 
-    steps  a list of dictionaries, one a step, with the keys of spec/formats.md; vectors are (n,) or (m,), matrices (n, n), (m, m) or
+    steps  a list of dictionaries, one per step, with the keys of spec/formats.md; vectors are (n,) or (m,), matrices (n, n), (m, m) or
            (n, m), and `modes` is a list of r dictionaries
-    scale  the same with the natural unit of every number
-    noise  the same with one number a quantity: how far rounding in doubles moves it, in those units
+    scale  the same with the scale of every number
+    noise  the same with one number per quantity: how far rounding in doubles moves it, in units of its scale
 
     `np.max(np.abs(x - expected) / scale) < 100 * noise` is a unit test.
     """
@@ -44,16 +44,16 @@ class Trace:
 
 
 def trace(problem: Problem) -> Trace:
-    """The certified trace of a problem: looked up for a published case, else computed, which for hundreds of steps takes minutes.
+    """The certified trace of a problem: looked up for a published case, otherwise computed, which takes minutes for hundreds of steps.
 
-    Raises ValueError where it cannot be certified.
+    Raises ValueError if it cannot be certified.
     """
     file = json.loads(problem._trace or problem._native.trace())
     return Trace(problem.id, *([_arrays(step) for step in file[part]] for part in ("steps", "scale", "noise")))
 
 
 def _arrays(value: Any) -> Any:
-    """Lists of numbers as arrays, in dictionaries and lists of them. What is beyond the doubles is null in JSON, and −∞."""
+    """Lists of numbers as arrays, in dictionaries and lists of them. A null in JSON is a logarithm below the doubles, −∞."""
     if isinstance(value, dict):
         return {key: _arrays(inner) for key, inner in value.items()}
     if isinstance(value, list):
@@ -66,7 +66,7 @@ def _arrays(value: Any) -> Any:
 @dataclass(frozen=True)
 class Rule:
     """A cubature rule for N(0, I): points (s, n), weights (s,), the weights for covariances (s,), and the degree to which all moments are
-    exact, proven; None beyond ten dimensions, where it is not tried."""
+    proven exact; None above ten dimensions, where it is not tried."""
 
     points: Array
     weights: Array

@@ -1,6 +1,6 @@
-"""What a filter shows of a step, read: every value is copied at once, so that arrays which are overwritten later do no harm.
+"""Reads the values that a filter shows in a step. Every value is copied at once, so that arrays may be overwritten later.
 
-What cannot be mistaken is accepted: lists and tuples, integers, a column (n, 1) or a row for a vector, a number for a 1 × 1 matrix, a
+Anything unambiguous is accepted: lists and tuples, integers, a column (n, 1) or a row for a vector, a number for a 1 × 1 matrix, a
 vector for a matrix with one row or column. Everything else is refused in a sentence with the place.
 """
 
@@ -14,11 +14,11 @@ Shape = tuple[int, ...]
 
 
 class Unreadable(Exception):
-    """What a filter shows cannot be read: the sentence."""
+    """A shown value cannot be read, with the reason."""
 
 
 class Reader:
-    """Reads what is shown of one step of a problem.
+    """Reads the values of one step of a problem.
 
     shapes     the quantities of a trace: name, whether each mode has its own, and shape
     modes      r
@@ -31,7 +31,7 @@ class Reader:
         self._modes, self._precision = modes, precision
 
     def read(self, shown: Any) -> dict[str, Any]:
-        """The step as the protocol has it. In a problem of one mode, what belongs to the mode may stand beside the rest."""
+        """The step in the form of the protocol. With one mode, the mode's values may stand beside the rest."""
         if not isinstance(shown, Mapping):
             raise Unreadable(f"step(z) returned a {type(shown).__name__}; it is to return a dictionary of what it shows")
         answer: dict[str, Any] = {}
@@ -108,7 +108,7 @@ class Reader:
 
 
 def _has(known: dict[str, Shape], key: Any) -> bool:
-    """Whether a key is that of a quantity, or of a mean and a covariance."""
+    """Whether a key names a quantity, or a mean and a covariance."""
     return key in known or any(name.startswith(f"{key}.") for name in known)
 
 

@@ -8,15 +8,15 @@ ROWS = 300
 
 
 class Wrong(AssertionError):
-    """A filter is wrong, or nothing of it was judged; the text is the verdict."""
+    """A filter is wrong, or nothing was judged; the text is the verdict."""
 
 
 class Verdict:
-    """The verdict: printed it is a text, in a notebook a table.
+    """The verdict: a text when printed, a table in a notebook.
 
     is_wrong     whether anything is wrong
-    is_empty     whether nothing could be judged at all: then nothing is known
-    is_complete  whether everything that such filters meet was judged and is right
+    is_empty     whether nothing could be judged at all
+    is_complete  whether every situation of such filters was judged and is right
     tracebacks   what the filter raised, by the id of the case, as Python would print it
     """
 
@@ -36,7 +36,7 @@ class Verdict:
         return self._report
 
     def raise_if_wrong(self) -> None:
-        """Raises `Wrong` with the text where anything is wrong, and where nothing could be judged."""
+        """Raises `Wrong` with the text if anything is wrong or nothing could be judged."""
         if self.is_wrong or self.is_empty:
             raise Wrong("\n" + str(self))
 
@@ -59,7 +59,7 @@ class Verdict:
         return "".join(parts)
 
     def _repr_html_(self) -> str:
-        """A table of the cases, what is wrong first, and the text."""
+        """A table of the cases, wrong ones first, and the text."""
         cases = sorted(self._report["cases"], key=lambda case: not case["wrong"])
         word = "wrong" if self.is_wrong else "nothing was judged" if self.is_empty else "right in what was judged"
         rows = []

@@ -1,4 +1,4 @@
-"""The published cases as tests of a filter, one a case:
+"""The published cases as tests of a filter, one per case:
 
     pytest --immaculate my_filters.py:MyFilter --immaculate-kind kalman
 
@@ -19,7 +19,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     group = parser.getgroup("immaculate", "a filter, judged case by case")
     group.addoption("--immaculate", metavar="FILE.py:NAME", help="the class or function that makes the filter")
     group.addoption(
-        "--immaculate-kind", action="append", metavar="KIND", help="a kind of filter that it has; may be given again"
+        "--immaculate-kind", action="append", metavar="KIND", help="a kind of filter that it has; may be repeated"
     )
     group.addoption(
         "--immaculate-problem", action="append", default=[], metavar="FILE", help="a problem file of your own, in place of the cases"

@@ -1,7 +1,6 @@
 //! Doc comments of equations, split into their fixed parts.
 //!
-//! After this file the reader knows the order in which an equation is documented: name and numbers; formula; dictionary; why; example;
-//! errors; errata; evidence.
+//! An equation is documented in a fixed order: name and numbers; formula; dictionary; why; example; errors; errata; evidence.
 
 use super::reference::{EquationReference, heading, headings};
 

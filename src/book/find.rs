@@ -1,6 +1,6 @@
-//! An equation by its number, its name, the value of the step that it gives, or the function that computes it.
+//! Finds an equation by its number, its name, the value of the step that it gives, or the function that computes it.
 //!
-//! After this file the reader knows what may be asked for, and what is answered to a name that does not exist.
+//! An unknown name is answered with the nearest known ones.
 
 use super::{Entry, entries, entries_of};
 use crate::paper::Paper;

@@ -1,6 +1,6 @@
-//! Doc comments as markdown: what stands in them, and as plain text.
+//! Doc comments as Markdown and as plain text.
 //!
-//! After this file the reader knows that links of doc comments lead to code in the book where it is there, and are names otherwise.
+//! A link in a doc comment leads to the code if the book has it; otherwise only its name remains.
 
 use super::source::Item;
 use super::{Realisation, realisations};

@@ -1,7 +1,7 @@
 //! The book of equations: the data of `spec/` and the source itself, joined equation by equation.
 //!
-//! After this folder the reader knows, of every equation of the papers, where its code is, why it is so, which tests hold it, and which
-//! mistakes are made in it and caught by which case. Nothing is said here that is not said there.
+//! For every equation of the papers the book shows its code, its derivation, its tests, the usual mistakes and the cases that catch them.
+//! It adds no information of its own.
 //!
 //! ```text
 //! spec/<paper>/equations.toml ─┐

@@ -1,7 +1,7 @@
 //! How comments name an equation: a paper's key, then printed numbers or names in parentheses.
 //!
-//! After this file the reader knows the one fixed form, in which lists and ranges are read, and where in a doc comment it says that an item
-//! *realises* an equation: after a dash. Everywhere else it is a mention.
+//! Lists and ranges have one fixed form. After a dash, a doc comment declares that its item *implements* an equation; anywhere else it
+//! only mentions it.
 
 use crate::paper::Paper;
 use std::fmt;

@@ -1,7 +1,7 @@
-//! The source as data: the items of `src/` and the tests of `tests/`, from the files that are built into the program.
+//! The source as data: the items of `src/` and the tests of `tests/`, from the files built into the program.
 //!
-//! After this file the reader knows how an item, its doc comment, its place and its code are found. Rust is read by the parser that the
-//! derive macros use, so that what is an item is not guessed from lines.
+//! An item is found with its doc comment, its place and its code. The parser is the one that derive macros use, so items are not guessed
+//! from lines.
 
 use include_dir::{Dir, include_dir};
 use proc_macro2::Span;

@@ -1,6 +1,4 @@
-//! `immaculate claims`: what the papers claim, each claim judged by a computation.
-//!
-//! After this file the reader knows how the judges are asked, and what is shown while they compute.
+//! `immaculate claims`: the papers' claims, each judged by a computation.
 
 use super::progress::bar;
 use super::{Done, MOST_RUNS, Refusal, check_that_memory_does, effort, json_text, papers};

@@ -1,6 +1,4 @@
-//! `immaculate reproduce`: the papers' simulations beside what they publish, and the files that are written of them.
-//!
-//! After this file the reader knows what is run for which paper, and what each file of `--out` is.
+//! `immaculate reproduce`: the papers' simulations beside the published figures, and the files written by `--out`.
 
 use super::progress::bar;
 use super::{Done, MOST_RUNS, Refusal, effort, json_text, make_directory, papers, write_file};

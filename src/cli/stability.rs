@@ -1,7 +1,6 @@
-//! `immaculate stability`: are two fixed-gain filters that exchange estimates stable together?
+//! `immaculate stability`: are two fixed-gain filters stable together when they mix their estimates?
 //!
-//! After this file the reader knows how noises become a verdict with its proof, how a proof is written and checked again, and how the map
-//! is asked for.
+//! Noises lead to a verdict with its proof. Proofs are written, checked again, and drawn as a map.
 
 use super::progress::bar;
 use super::{Done, Refusal, json_text, make_directory, read_file, write_file};

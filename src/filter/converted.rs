@@ -1,7 +1,7 @@
 //! The converted measurement filter: range and bearing become a position first, and a Kalman filter does the rest.
 //!
-//! After this file the reader knows that the filter's only own equations come before it: what is measured is moved from polar to Cartesian
-//! coordinates, its noise with it, and from there on the measurement is linear:
+//! The filter adds equations only at the beginning: the measurement and its noise are converted from polar to Cartesian coordinates. From
+//! then on the measurement is linear:
 //!
 //! ```text
 //! z = [r, θ], R ─ conversion ─▶ z^c, R^c ─▶ ν = z^c − H x̂⁻,  S = H P⁻ Hᵀ + R^c ─▶ gain, update and likelihood of a Kalman filter

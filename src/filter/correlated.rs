@@ -5,10 +5,10 @@
 //! x = f(x before) + w,   z = H x + v,   E[w wᵀ] = Q,   E[v vᵀ] = R,   E[w vᵀ] = M
 //!
 //! P⁻ ─ cross_covariance ──────▶ C = P⁻Hᵀ + M ──────────────────┐
-//!    └ innovation_covariance ─▶ S = H P⁻Hᵀ + H M + MᵀHᵀ + R ───┴─▶ gain and update as ever: super::update
+//!    └ innovation_covariance ─▶ S = H P⁻Hᵀ + H M + MᵀHᵀ + R ───┴─▶ gain and update as usual: super::update
 //! ```
 //!
-//! The prediction is as ever, too: P⁻ has Q in it and nothing of v. Once the measurement is used, the noises of the next step are new.
+//! The prediction is unchanged, too: P⁻ contains Q and nothing of v. Once the measurement is used, the noises of the next step are new.
 //!
 //! Some texts correlate v with the noise that *leaves* the state, E[w(k) v(k)ᵀ] with x(k+1) = F x(k) + w(k); that is another filter, whose
 //! prediction depends on the measurement. Here w and v are of the same step, as in Simon 2006, section 7.1.

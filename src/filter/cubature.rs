@@ -1,7 +1,7 @@
 //! Moments by points and weights: the equations of every cubature filter, unscented and Gauss-Hermite included.
 //!
-//! After this file the reader knows that such a filter is a Kalman filter whose four moments (predicted mean and covariance, ẑ and
-//! its covariances) are weighted sums over points. The rule ([`crate::rule`]) is an argument; nothing here depends on which.
+//! Such a filter is a Kalman filter whose four moments (predicted mean and covariance, ẑ and its covariances) are weighted sums over
+//! points. The rule ([`crate::rule`]) is an argument; nothing here depends on which rule it is.
 //!
 //! ```text
 //! x̂⁰, P⁰ ─ cholesky ─▶ S ─ point ─▶ X ─ propagated_point ─▶ X* ─ weighted_mean, weighted_covariance ─▶ x̂⁻, P⁻

@@ -1,4 +1,4 @@
-//! The extended Kalman filter: the linear equations at the slopes of motion and measurement.
+//! The extended Kalman filter: the linear equations with the Jacobians of motion and measurement.
 //!
 //! The mean goes through the functions themselves, the covariance through their Jacobians. Everything else is the Kalman filter:
 //!
@@ -7,7 +7,7 @@
 //! x̂⁻ ─ h ─▶ ẑ         P⁻ ─ H = ∂h/∂x at x̂⁻ ─▶ S = H P⁻ Hᵀ + R,  C = P⁻ Hᵀ            super::kalman, super::update
 //! ```
 //!
-//! Nobody writes a Jacobian by hand here: each column is the slope of the function itself, run in [`Dual`] numbers. A hand-written Jacobian
+//! Jacobians are not written by hand: each column is the derivative of the function itself, run in [`Dual`] numbers. One written by hand
 //! is compared with it entry by entry.
 
 use crate::matrix::{Holds, Shapes, rows};
@@ -74,7 +74,7 @@ where
 /// | h      | `sensor` |       | the measurement      |
 /// | x̂⁻     | `at`     | N     | the predicted mean   |
 ///
-/// Why: as for the motion. At the sensor itself range and bearing have no slopes; an entry is then undecided, and the step is refused.
+/// Why: as for the motion. At the sensor itself range and bearing have no derivatives; an entry is then undecided, and the step is refused.
 ///
 /// Example: range and bearing of a target 3 m east and 4 m north of the sensor, x/r, y/r and −y/r², x/r².
 ///

@@ -1,8 +1,8 @@
-//! The fixed-gain filter: its gain is a number of the problem and not of the data.
+//! The fixed-gain filter: the problem gives the gain; the data do not change it.
 //!
-//! After this file the reader knows what is left of a mode's filter once its covariances are gone: two constant matrices, one that
-//! corrects the prediction and one that says how likely a residual is. Where they come from is in [`crate::steady::gains`] and
-//! [`crate::steady::riccati`]; a filter that has them is [`Filter::given`](super::Filter::given).
+//! Without covariances, a mode's filter consists of two constant matrices: one corrects the prediction, the other gives the likelihood of
+//! a residual. [`crate::steady::gains`] and [`crate::steady::riccati`] derive them; [`Filter::given`](super::Filter::given) makes a filter
+//! from them.
 
 use crate::matrix::{Holds, Shapes};
 use crate::number::Field;

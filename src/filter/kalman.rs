@@ -1,6 +1,6 @@
 //! The Kalman filter's predictions: exact when motion and measurement are linear.
 //!
-//! After this file the reader knows what the cubature filters approximate, and what they must equal on a linear problem.
+//! The cubature filters approximate these predictions and must equal them on a linear problem.
 //!
 //! ```text
 //! x̂⁰ ─ predicted_mean ───────▶ x̂⁻ ─ H ─▶ ẑ

@@ -6,7 +6,7 @@
 //! ```text
 //! Filter { predict: Transform,              x̂⁰, P⁰ ─▶ x̂⁻, P⁻
 //!          update:  By(Transform)           x̂⁻, P⁻ ─▶ ẑ, S, C ─▶ gain
-//!                 | Iterated(times)         the same at the slopes where the estimate turns out to be
+//!                 | Iterated(times)         the same, relinearised at the updated estimate
 //!                 | Converted(Conversion)   z ─▶ z^c, R^c, then as a Kalman filter
 //!                 | Given(FixedGain) }      gain and S are numbers of the problem; there is no covariance of the state
 //! ```
@@ -41,7 +41,7 @@ where
 {
     /// The moments of the predicted measurement by a transform, and the gain from them: [`update`](super::update).
     By(Transform<T, N>),
-    /// As by slopes, so many times, each at the estimate of the time before: [`iterated`](super::iterated).
+    /// Like the extended filter, several times, each at the previous estimate: [`iterated`](super::iterated).
     Iterated(NonZeroUsize),
     /// Range and bearing become a position first: [`converted`](super::converted).
     Converted(Conversion),
@@ -73,7 +73,7 @@ where
     pub predict: Transform<T, N>,
     /// What is done with a measurement.
     pub update: Update<T, N, M>,
-    /// M = E[w vᵀ] of process and measurement noise, N × M; none where they are independent. For updates by a matrix or its slopes:
+    /// M = E[w vᵀ] of process and measurement noise, N × M; none if they are independent. For updates by a matrix or a Jacobian:
     /// [`correlated`](super::correlated).
     pub noise_cross_covariance: Option<OMatrix<T, N, M>>,
 }
@@ -91,7 +91,7 @@ where
         }
     }
 
-    /// The extended Kalman filter: motion and measurement at their slopes.
+    /// The extended Kalman filter: motion and measurement by their Jacobians.
     ///
     /// Source: Smith, Schmidt and McGee 1962; Bar-Shalom, Li and Kirubarajan 2001, section 10.3.
     ///
@@ -131,7 +131,7 @@ where
         }
     }
 
-    /// The iterated extended Kalman filter, whose update is linearised so many times.
+    /// The iterated extended Kalman filter, whose update is linearised several times.
     ///
     /// Source: Bar-Shalom, Li and Kirubarajan 2001, section 10.5.2.
     ///
@@ -158,7 +158,7 @@ where
     /// let range = |filter| -> Result<f64, Box<dyn std::error::Error>> {
     ///     Ok(Imm::new(problem(filter), &initial)?.step(Some(&vector![10.0]))?.combined.mean.norm())
     /// };
-    /// // At the slope of where it was expected the correction is too long.
+    /// // With the derivative at the expected place, the correction is too long.
     /// assert!((range(Filter::extended())? - 10.0).abs() > 0.5);
     /// assert!((range(Filter::iterated(NonZeroUsize::new(5).unwrap()))? - 10.0).abs() < 0.01);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -323,7 +323,7 @@ where
         !matches!(self.update, Update::Given(_))
     }
 
-    /// Whether it uses the slopes of the measurement, as extended filters do.
+    /// Whether it uses the Jacobian of the measurement, as extended filters do.
     pub fn linearises_the_measurement(&self) -> bool {
         matches!(self.update, Update::By(Transform::Linearised) | Update::Iterated(_))
     }

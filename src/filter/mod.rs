@@ -1,7 +1,7 @@
 //! One filter: prediction and update of a single Gaussian.
 //!
-//! After this folder the reader knows the kinds of filter that run inside the interacting multiple model filter, and that those that
-//! compute their gain share their last three equations:
+//! These are the kinds of filter that run inside the interacting multiple model filter. All kinds that compute their gain share the last
+//! three equations:
 //!
 //! ```text
 //! kalman:    x̂, P ─ F, Q ─▶ predicted ─ H, R ─▶ ẑ, S, C ────────────────────────────┐
@@ -11,11 +11,11 @@
 //!
 //! Reading order:
 //!
-//! - [`kind`]: which of these a filter is, said once;
+//! - [`kind`]: which of these a filter is;
 //! - [`kalman`]: the linear equations;
 //! - [`correlated`]: the same where the noises of motion and measurement are correlated;
-//! - [`extended`]: the same at the slopes of motion and measurement;
-//! - [`iterated`]: the measurement at the slopes where the estimate turns out to be;
+//! - [`extended`]: the same with the Jacobians of motion and measurement;
+//! - [`iterated`]: the measurement relinearised at the updated estimate;
 //! - [`cubature`]: the same moments by points and weights, in the centred form of liu2017;
 //! - [`raw`]: the moments about the origin that zhu2016 prints, equal in exact arithmetic and poorer in floating point;
 //! - [`update`]: gain, updated mean, updated covariance, for both;

@@ -1,8 +1,7 @@
 //! Second moments about the origin, as zhu2016 prints them: the same numbers as the centred form, with fewer digits.
 //!
-//! After this file the reader knows the identity that ties both forms, Σ w (X − x̂)(X − x̂)ᵀ = Σ w X Xᵀ − x̂ x̂ᵀ when Σ w = 1 and
-//! x̂ = Σ w X, and its price: at a position of 10⁴ m with a covariance of 1 m² two numbers of 10⁸ m² are subtracted, and eight of
-//! sixteen digits are gone.
+//! Both forms are tied by the identity Σ w (X − x̂)(X − x̂)ᵀ = Σ w X Xᵀ − x̂ x̂ᵀ, valid if Σ w = 1 and x̂ = Σ w X. The price of this form:
+//! at a position of 10⁴ m with a covariance of 1 m², it subtracts two numbers of 10⁸ m² and loses eight of sixteen digits.
 //!
 //! These are *forms*: other algebra for the same exact values. They are right for measurements without angles only, since the
 //! raw moment of an angle depends on where the circle is cut, and for weights that sum to one, which the covariance weights of the

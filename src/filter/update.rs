@@ -1,6 +1,6 @@
 //! Gain, updated mean and updated covariance, for every filter.
 //!
-//! After this file the reader knows how a residual corrects a prediction once ẑ, S and C are there, wherever they came from.
+//! The residual corrects the prediction from ẑ, S and C, in the same way for every kind of filter.
 //!
 //! ```text
 //! C, S ─ gain ─▶ W         x̂⁻, W, ν = z − ẑ ─ updated_mean ─▶ x̂         P⁻, W, S ─ updated_covariance ─▶ P

@@ -1,7 +1,7 @@
-//! The wiring: runs a table of equations in the papers' order, for every table the same.
+//! The wiring: evaluates any table of equations in the papers' order.
 //!
-//! After this file the reader knows the cycle: what is computed before what, what happens without a detection, how a step that
-//! cannot be computed is reported, and how an [`Observer`] sees every value as soon as it is there.
+//! The cycle fixes the order of the computation, the handling of a missed detection, and the report of a step that cannot be computed. An
+//! [`Observer`] sees every value as soon as it is computed.
 //!
 //! ```text
 //! step before ─▶ mix ─▶ predict each mode ─▶ combine the prediction ─┬─ z ─▶ convert ─▶ update each mode ─▶ weigh ─┬─▶ combine ─▶ step

@@ -1,6 +1,6 @@
-//! The interacting multiple model filter: several filters that exchange what they know before every step.
+//! The interacting multiple model filter: several filters that mix their estimates before every step.
 //!
-//! After this folder the reader knows the whole cycle, in the order in which it is evaluated:
+//! The whole cycle, in the order of evaluation:
 //!
 //! ```text
 //! predicted mode probabilities   cⱼ = Σᵢ pᵢⱼ μᵢ                        [probability]

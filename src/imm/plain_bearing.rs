@@ -1,7 +1,7 @@
-//! Bearings as plain numbers: the filters with points as programs run them that know nothing of angles.
+//! Bearings as plain numbers: filters with points as written by programs that ignore angles.
 //!
-//! After this file the reader can exchange each of the three places at which a bearing of 179° and one of −179° are 358° apart: the mean of
-//! the points' bearings, their deviations from it, and the innovation. Far from the negative x-axis nothing changes.
+//! Three places, each of which can be exchanged, treat bearings of 179° and −179° as 358° apart: the mean of the points' bearings, their
+//! deviations from it, and the innovation. Far from the negative x-axis nothing changes.
 
 use super::Equations;
 use super::equations::used;

@@ -1,7 +1,6 @@
-//! The equations of the cycle that the papers print wrongly, as they are printed.
+//! The misprinted equations of the cycle, exactly as printed.
 //!
-//! After this file the reader can run what is printed and see what it does. Each form is here once, for the tests that show it wrong
-//! and for the scenarios that measure its effect.
+//! They can be run to see what they do. The tests use each form to show that it is wrong, and the scenarios use it to measure its effect.
 
 use super::Equations;
 use crate::matrix::{Holds, Ldl, Shapes, ldl, log_determinant, quadratic_form};

@@ -1,6 +1,6 @@
-//! The probabilities of the modes: forward along the Markov chain, backward to where a mode came from, and updated by Bayes' rule.
+//! The mode probabilities: forward along the Markov chain, backward to the previous mode, and updated by Bayes' rule.
 //!
-//! After this file the reader knows the only part of the cycle that is not linear algebra, and why it is written in logarithms.
+//! This is the only part of the cycle that is not linear algebra. It is written in logarithms, because likelihoods underflow.
 //!
 //! ```text
 //! pᵢⱼ, μᵢ ─ predicted_mode_probability ─▶ cⱼ ─ mixing_probability ─▶ μᵢ∣ⱼ ─▶ the estimates are mixed, predicted and updated ─▶ ln Lⱼ

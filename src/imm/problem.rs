@@ -1,7 +1,6 @@
-//! What a run of the filter is given, and the checks that it must pass.
+//! The inputs of a run, and the checks that they must pass.
 //!
-//! After this file the reader knows the inputs of the cycle and every way in which they can be wrong. Nothing is repaired: a matrix
-//! that is not quite symmetric or a row that does not quite sum to one is an error that names itself.
+//! Nothing is repaired: a matrix that is not quite symmetric, or a row that does not quite sum to one, is an error that names its place.
 //!
 //! ```text
 //! Problem (the same at every step) ─┬─ check ─▶ Imm::new ─▶ step, step, …        InvalidProblem: the field, and the equation that needs it

@@ -1,7 +1,7 @@
-//! Modes of unequal dimensions: what is mixed where a mode has no such entry of the state.
+//! Modes of unequal dimensions: how to mix if a mode lacks an entry of the state.
 //!
-//! After this file the reader knows three answers. Constant velocity has no acceleration, constant acceleration has one; embedded in the
-//! larger state, the first knows its acceleration exactly: it is zero ([`Mode::lacks`]).
+//! There are three answers. Constant velocity has no acceleration, constant acceleration has one. Embedded in the larger state, the first
+//! mode knows its acceleration exactly: it is zero ([`Mode::lacks`]).
 //!
 //! | mixing     | the missing entry counts as                   | what that keeps, and what it gives up                       |
 //! |------------|-----------------------------------------------|-------------------------------------------------------------|

@@ -1,8 +1,7 @@
 //! Motion along one coordinate with the acceleration in the state: the two models of derbez2000.
 //!
-//! After this file the reader knows how a constant velocity and a constant acceleration model share one state [p, ṗ, p̈], so that their
-//! estimates can be mixed, and how their noises enter it. Each coordinate of the target is filtered by itself; what is measured is the
-//! position, H = [1 0 0].
+//! Constant velocity and constant acceleration share one state [p, ṗ, p̈], so that their estimates can be mixed. Each coordinate of the
+//! target is filtered separately. The measurement is the position, H = [1 0 0].
 //!
 //! ```text
 //! constant velocity       F            the acceleration is set to zero at every step

@@ -1,6 +1,6 @@
 //! Angles: one policy, stated once.
 //!
-//! After this file the reader knows what every equation does with an angle:
+//! Every equation treats angles like this:
 //!
 //! - a bearing is atan2(y, x) in (−π, π], counter-clockwise from the x-axis;
 //! - a difference of angles is wrapped to (−π, π] ([`wrap`]);

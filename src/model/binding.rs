@@ -1,6 +1,6 @@
 //! A named model for a given state: its formulas with the axes written out and the parameters bound.
 //!
-//! After this file the reader knows what becomes of the components of a state that a model does not need, and of axes that it has not.
+//! This file also handles components of the state that the model does not need, and axes that the state does not have.
 //!
 //! A row that holds for each axis is written out for the axes of which the state has a component. So the same row is a motion along one
 //! line, in the plane and in space, and the state says which. The components may stand in any order.

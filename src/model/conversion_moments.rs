@@ -1,7 +1,6 @@
-//! What a converted measurement is on average: the exact moments of x = r cos θ, y = r sin θ under Gaussian noise of range and bearing.
+//! The exact moments of a converted measurement x = r cos θ, y = r sin θ under Gaussian noise of range and bearing.
 //!
-//! After this file the reader knows against what every conversion of [`conversion`](super::conversion) is judged, and that all of it
-//! follows from one expectation:
+//! Every conversion of [`conversion`](super::conversion) is judged against these moments. They all follow from one expectation:
 //!
 //! ```text
 //! E[cos mθ̃] = e^(−m²σ²/2) = w^(m²),   E[sin mθ̃] = 0,   w = e^(−σ²/2)

@@ -1,8 +1,8 @@
-//! Where a conversion says the truth about its own error.
+//! Where a conversion states its own error correctly.
 //!
-//! After this file the reader knows what the rule r σ_θ²/σ_r < 0.4, σ_θ < 0.4 rad means, and in which of two senses each conversion's
-//! covariance is right. Everything is a closed form of the exact moments ([`conversion_moments`](super::conversion_moments)) in two
-//! numbers: ρ = r σ_θ²/σ_r, twice the bias r σ_θ²/2 of the plain conversion in units of σ_r, and σ_θ itself.
+//! This explains the rule r σ_θ²/σ_r < 0.4, σ_θ < 0.4 rad, and the two senses in which a conversion's covariance can be right. Everything
+//! is a closed form of the exact moments ([`conversion_moments`](super::conversion_moments)) in two numbers: ρ = r σ_θ²/σ_r, which is
+//! twice the bias r σ_θ²/2 of the plain conversion in units of σ_r, and σ_θ itself.
 //!
 //! ```text
 //! as σ_θ tends to 0 at the same ρ   standard       additive, multiplicative   modified unbiased

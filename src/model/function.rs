@@ -1,6 +1,6 @@
 //! The functions of a filter as data: a matrix with an offset, or formulas.
 //!
-//! After this file the reader knows how a motion f or a measurement h that nobody wrote in Rust is run and differentiated.
+//! A motion f or a measurement h that is given as data is evaluated and differentiated here.
 //!
 //! ```text
 //! y = M x + b          or          y = f(x; given; parameters)
@@ -284,7 +284,7 @@ impl Function {
         }
     }
 
-    /// The slopes at a state: a row a component of the value, a column a component of the state.
+    /// The Jacobian at a state: one row per component of the value, one column per component of the state.
     ///
     /// Source: M itself, or [`Formulas::jacobian_at`].
     ///
@@ -294,7 +294,7 @@ impl Function {
     /// use immaculate::model::function::Function;
     ///
     /// let turned = Function::of_formulas(&["vx", "w"], &["T"], &[], &[], &[("x", "T*c1((w*T)^2)*vx")])?;
-    /// // T and, since c₁ has no slope at zero, 0.
+    /// // T and, since c₁ has derivative zero at zero, 0.
     /// assert_eq!(turned.jacobian_at(&[7.0, 0.0], &[2.0]), [[2.0, 0.0]]);
     /// # Ok::<(), immaculate::model::function::InvalidFunction>(())
     /// ```

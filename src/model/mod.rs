@@ -1,9 +1,9 @@
-//! How the target moves and what the sensor sees.
+//! The motion of the target and the measurement of the sensor.
 //!
-//! After this folder the reader knows the transition matrices and noise covariances of the papers' models and where they come from
-//! ([`motion`], [`acceleration`] for one coordinate with its acceleration, and [`wiener`] for two), the two measurements
-//! ([`sensor`]), how range and bearing become a position ([`conversion`]), what that does to their noise ([`conversion_moments`])
-//! and how far it can be trusted ([`conversion_validity`]), and what happens to angles at ±π ([`angle`]).
+//! This folder derives the transition matrices and noise covariances of the papers' models ([`motion`], [`acceleration`] for one
+//! coordinate with its acceleration, and [`wiener`] for two) and the two measurements ([`sensor`]). It shows how range and bearing become
+//! a position ([`conversion`]), what that does to their noise ([`conversion_moments`]), when it can be trusted ([`conversion_validity`]),
+//! and how angles behave at ±π ([`angle`]).
 //!
 //! ```text
 //! state ─ F, Q of a mode ─▶ state a step later ─ h, R of the sensor ─▶ measurement ( ─ conversion ─▶ position and its covariance )

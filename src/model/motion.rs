@@ -1,7 +1,6 @@
-//! Motion models: constant velocity and coordinated turn, and the noise that integrates along them.
+//! Motion models: constant velocity and coordinated turn, with their integrated process noise.
 //!
-//! After this file the reader knows the matrices F and Q of zhu2016 and liu2017 and that they belong together: with white noise of
-//! spectral density q on the acceleration,
+//! In zhu2016 and liu2017 the matrices F and Q belong together. With white noise of spectral density q on the acceleration,
 //!
 //! ```text
 //! F = e^{AT},     Q = ∫₀ᵀ e^{Aτ} L q Lᵀ e^{Aᵀτ} dτ
@@ -57,7 +56,7 @@ impl<T: Field, N: Dim> Mode<T, N>
 where
     Shapes: Holds<N>,
 {
-    /// Whether the motion has no such entry of the state — sustika2015 (padding). That is told from a matrix only.
+    /// Whether the motion has no such entry of the state — sustika2015 (padding). Only a matrix shows it.
     ///
     /// It sets it to zero, without noise, and knows it exactly ever after. That is how models of unequal dimensions share one state,
     /// constant velocity and constant acceleration for instance.

@@ -1,7 +1,6 @@
-//! The named models of `spec/models.toml`, which is built into the program.
+//! The named models of `spec/models.toml`, built into the program.
 //!
-//! After this file the reader knows what a row says of a model, and how it is found by its name. What a row becomes for a given state is in
-//! [`super::binding`].
+//! A model is found by its name. [`super::binding`] turns its row into a model for a given state.
 
 use super::nearest::nearest;
 use super::space::{Component, ComponentKind};

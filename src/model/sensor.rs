@@ -1,7 +1,6 @@
-//! What the sensor sees: a linear function of the state, range and bearing, or these converted to a position.
+//! The measurement: a linear function of the state, range and bearing, or these converted to a position.
 //!
-//! After this file the reader knows the papers' measurements, how residuals are formed and how measurements of cubature points
-//! are averaged when some of their components are angles ([`super::angle`]).
+//! This file forms residuals and averages the measurements of cubature points, also if some components are angles ([`super::angle`]).
 //!
 //! ```text
 //! state or point ─ of ─▶ Z          weights, Z, centre ─ mean ─▶ ẑ          z, ẑ ─ difference ─▶ ν = z − ẑ, angles wrapped

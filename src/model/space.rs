@@ -1,6 +1,6 @@
-//! Spaces: what a vector is, component by component.
+//! Spaces: which components a vector has, and which of them are angles.
 //!
-//! After this file the reader knows how vectors are subtracted and averaged when some of their components are angles.
+//! A space subtracts and averages vectors that contain angles.
 //!
 //! ```text
 //! a, b ─ difference ─▶ a − b, angles wrapped          weights, values, centre ─ mean ─▶ Σ w v, angles averaged around the centre

@@ -1,9 +1,8 @@
 //! Motion in the plane with the accelerations in the state: the two models of sustika2015.
 //!
-//! After this file the reader knows how the six-dimensional state [x, y, ẋ, ẏ, ẍ, ÿ] is made of two coordinates that move alike and know
-//! nothing of each other, and which noise belongs to each motion. The noise is white in continuous time: on the acceleration where the
-//! velocity is constant, so that the velocity is a Wiener process; on the rate of the acceleration where that is constant, so that the
-//! acceleration is one.
+//! The six-dimensional state [x, y, ẋ, ẏ, ẍ, ÿ] consists of two coordinates that move alike and independently. The noise is white in
+//! continuous time. With constant velocity it acts on the acceleration, so the velocity is a Wiener process; with constant acceleration it
+//! acts on the jerk, so the acceleration is a Wiener process.
 //!
 //! ```text
 //! F = e^{At},     Q = ∫₀ᵗ e^{Aτ} g q gᵀ e^{Aᵀτ} dτ

@@ -1,6 +1,6 @@
-//! Decimals: how an exact number is read from one, and written as the nearest one.
+//! Decimals: reading them exactly, and writing the nearest one.
 //!
-//! After this file the reader knows that no digit is lost on the way in, and how the nearest decimal is found on the way out.
+//! Reading loses no digit.
 
 use num_bigint::BigInt;
 use num_integer::Integer;

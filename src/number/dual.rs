@@ -1,6 +1,6 @@
-//! Dual numbers a + bε with ε² = 0: an equation that is run on them gives its own derivative.
+//! Dual numbers a + bε with ε² = 0: an equation evaluated on them gives its own derivative.
 //!
-//! After this file the reader knows how a first-order expansion is proven by running the code that it expands.
+//! Running code on them proves its first-order expansion.
 //!
 //! ```text
 //! (a + bε) + (c + dε) = (a + c) + (b + d)ε

@@ -1,6 +1,6 @@
 //! Doubles as a number system, with the same bits on every platform.
 //!
-//! After this file the reader knows why a run gives the same bits everywhere, and what an equation may not call.
+//! Equations call only functions that give the same bits everywhere.
 //!
 //! How the same bits are obtained:
 //!

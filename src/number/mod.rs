@@ -1,6 +1,6 @@
 //! The number systems in which the equations are evaluated.
 //!
-//! After this folder the reader knows on which numbers an equation can be run, and what each of them proves.
+//! Each number system proves something different about an equation that is evaluated in it.
 //!
 //! Every equation of this crate is written once, generic over the number it computes with. The same text then runs on
 //! ordinary doubles, on exact rationals, on surds and on rational functions of named unknowns, and each of these says

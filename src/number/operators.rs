@@ -1,6 +1,6 @@
-//! The operators `+ − × ÷` of a number system, by value, by reference and in place, all from one method each.
+//! The operators `+ − × ÷` of a number system: by value, by reference and in place, all from one method each.
 //!
-//! After this file the reader knows why five methods are enough for the twenty-six operators of a number system.
+//! Five methods define all twenty-six operators.
 //!
 //! A number system that is built upon another, such as the dual numbers over any field, names the other in brackets:
 //! `ring_operators!(Dual<T> [T: Field])`.

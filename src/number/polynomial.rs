@@ -1,6 +1,6 @@
 //! Polynomials in named unknowns, with surds as coefficients.
 //!
-//! After this file the reader knows why two polynomials are equal exactly if they are written the same.
+//! Polynomials have a canonical form: two of them are equal exactly if they are written the same.
 //!
 //! They are the numerators and denominators of [`RationalFunction`](super::RationalFunction), the number system in
 //! which an identity is proven for all values of its unknowns at once. A polynomial is kept as a map from monomials to

@@ -1,6 +1,6 @@
 //! The terms of a surd and their arithmetic.
 //!
-//! After this file the reader knows all that is needed of square roots, in four short algorithms.
+//! Four short algorithms do everything that square roots need.
 //!
 //! - [`product`]: √a · √b = g · √(ab/g²) with g = gcd(a, b).
 //! - [`quotient`]: a denominator becomes rational when it is multiplied by its conjugates.

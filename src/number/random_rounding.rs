@@ -1,6 +1,6 @@
-//! Doubles whose operations are perturbed at random: how much of a result is only arithmetic.
+//! Monte Carlo arithmetic: doubles whose operations are rounded at random, to measure the rounding noise of a result.
 //!
-//! After this file the reader knows how the rounding noise of an equation is measured, and what a perturbation leaves alone.
+//! Exact operations are not perturbed.
 //!
 //! A rounded operation gives its exact result times 1 + δ with |δ| ≤ u, the unit roundoff of the precision. Here every result of a
 //! double is multiplied by 1 + ξ with ξ drawn evenly from (−2u, 2u), so that the same equations, evaluated a few times, scatter

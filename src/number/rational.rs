@@ -1,6 +1,6 @@
-//! Exact rational numbers: the ground of every proof with no tolerance.
+//! Exact rational numbers, the basis of every proof without a tolerance.
 //!
-//! After this file the reader knows how a double goes in exactly and comes out as the nearest one.
+//! A double is read exactly, and the nearest double is written.
 //!
 //! [`Rational`] is the fraction of two integers of any size, in lowest terms. What it adds to the number it wraps:
 //! division by zero is a value ([`Field::undecided`]) and not a panic, a double goes in exactly

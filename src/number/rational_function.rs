@@ -1,6 +1,6 @@
-//! Rational functions of named unknowns: the number system in which an identity is proven for all inputs.
+//! Rational functions of named unknowns: the number system that proves an identity for all inputs.
 //!
-//! After this file the reader knows how running a piece of code proves an identity.
+//! Running code on them proves an identity.
 //!
 //! An equation that is evaluated on unknowns gives a fraction of polynomials, and two of these are equal exactly if
 //! a · d = c · b for a/b and c/d. So an identity is proven by running the code of its two sides. No greatest common

@@ -1,6 +1,6 @@
 //! Surds: sums of rational multiples of square roots, such as `1 + 3/2·√2`, exactly.
 //!
-//! After this file the reader knows how sums of square roots are compared without a tolerance.
+//! Sums of square roots are compared without a tolerance.
 //!
 //! The points and weights of cubature rules are made of them. A surd is kept as a map from square-free radicands to
 //! non-zero rational coefficients, and that form is unique, because the square roots of different square-free integers
@@ -100,7 +100,7 @@ impl Surd {
     ///
     /// An irrational number is bracketed between two rationals, closer and closer, until both round to the same. This
     /// ends: the result changes only at rational numbers (zero, for the sign; the middle of two doubles, for the
-    /// nearest double), the number is none of them, and so a bracket that is small enough contains none.
+    /// nearest double), the number is not among them, and so a bracket that is small enough contains none.
     fn round<R: PartialEq>(&self, rounding: impl Fn(&BigRational) -> R) -> Option<R> {
         let terms = self.terms.as_ref()?;
         if let Some(rational) = rational_value(terms) {

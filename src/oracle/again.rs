@@ -13,7 +13,7 @@ use super::subject::{Answer, Subject};
 use super::trace::Trace;
 use super::verdict::{CaseReport, Outcome};
 
-/// So many wrong cases are asked alone: to start a program may take seconds, and one case that is right alone says it all.
+/// At most this many wrong cases are asked alone: starting a program may take seconds, and one case that is right alone is enough.
 const ASKED_ALONE: usize = 3;
 
 /// Judges an answer to one of the cases that were asked for.

@@ -1,6 +1,6 @@
-//! The other side of the protocol: how a filter in Rust answers to the messages of a check.
+//! The other side of the protocol: how a filter in Rust answers the messages of a check.
 //!
-//! After this file the reader can make a program under test out of anything that implements [`Subject`].
+//! It turns any [`Subject`] into a program under test.
 
 use super::problem::{FORMAT, FORMAT_2, ProblemFile};
 use super::subject::{Answer, Broken, Precision, Ready, Subject};

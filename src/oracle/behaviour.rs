@@ -1,7 +1,6 @@
-//! What a filter may meet, and how it was judged there.
+//! The situations that a filter may meet, and its verdict in each.
 //!
-//! After this file the reader knows why a program that is right on all that it was asked need not be right: what it was never asked is
-//! said, filter by filter.
+//! A program that is right on everything it was asked need not be right. So the verdict lists, filter by filter, what it was never asked.
 
 use super::problem::{FAMILIES, ProblemFile};
 use super::verdict::{CaseReport, Outcome, Report, families};
@@ -164,11 +163,11 @@ impl NotAsked {
 /// How a family of filters was judged in a behaviour.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Grade {
-    /// All that was judged is right, in so many cases.
+    /// Everything judged is right; the number of cases.
     Right(usize),
-    /// Something is wrong, in so many of these cases.
+    /// Something is wrong; the number of wrong cases, and of all.
     Wrong(usize, usize),
-    /// Forms or conventions explain the faults of so many of these cases.
+    /// Forms or conventions explain the faults; the number of such cases, and of all.
     Otherwise(usize, usize),
     /// Rounding noise is as large as the values.
     CannotTell,

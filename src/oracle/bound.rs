@@ -1,7 +1,7 @@
-//! The formulas and named models of a problem as functions, and these in a number system.
+//! The formulas and named models of a problem as functions in a number system.
 //!
-//! After this file the reader knows which names a formula may use, where an error stands in the file, and that a function that is linear
-//! becomes a matrix, so that filters without points have it, too.
+//! This file resolves the names in a formula and reports errors with their place in the file. A function that is linear becomes a matrix,
+//! so that filters without points can use it too.
 //!
 //! ```text
 //! state, parameters, let ─▶ names ─┬─ f, Q, h in formulas ─▶ Bound ─ step length, number system ─▶ Motion, Q, Sensor

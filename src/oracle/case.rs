@@ -1,7 +1,6 @@
-//! The published cases: problems with their certified traces, locked by digests, carried inside the program.
+//! The published cases: problems with their certified traces, locked by digests and built into the program.
 //!
-//! After this file the reader knows the second promise of the cases: an id is never changed and never used again, a published case is never
-//! edited, and a file that does not have the digest of the lock is an error.
+//! An id is never changed and never reused, and a published case is never edited. A file whose digest differs from the lock is an error.
 
 use super::certify::{Certified, NotCertified, certify};
 use super::invalid::{Class, Invalid};
@@ -23,7 +22,7 @@ static FILES: Dir = include_dir!("$CARGO_MANIFEST_DIR/fixtures/cases");
 pub struct Lock {
     /// `immaculate-lock/1`.
     pub format: String,
-    /// One entry a case, in the order of the list.
+    /// One entry per case, in the order of the list.
     pub cases: Vec<Locked>,
 }
 

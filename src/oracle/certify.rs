@@ -1,9 +1,8 @@
 //! Certified traces: for every number the double nearest to the exact value, proven by enclosure.
 //!
-//! After this file the reader knows the first promise of the cases. The equations are evaluated in [`Enclosure`] on the exact inputs of the
-//! file. If every number of the trace is enclosed so narrowly that one double is the nearest to all that the enclosure holds, these doubles
-//! are the trace; if not, or if a comparison cannot be decided, it is done again with twice the bits. Long runs, for which that would be
-//! thousands of bits, are carried from step to step instead: [`ellipsoid`](super::ellipsoid).
+//! The equations are evaluated in [`Enclosure`] on the exact inputs of the file. If the enclosure of every number is so narrow that one
+//! double is the nearest to all its points, these doubles are the trace. If not, or if a comparison cannot be decided, the run is repeated
+//! with twice the bits. Long runs would need thousands of bits; they are carried from step to step instead: [`ellipsoid`](super::ellipsoid).
 
 use super::carried::Numbers;
 use super::invalid::{Class, Invalid};

@@ -1,7 +1,6 @@
-//! The long CSV: one number a line, for MATLAB, C, embedded and spreadsheet users.
+//! The long CSV: one number per line, for users of MATLAB, C, embedded systems and spreadsheets.
 //!
-//! After this file the reader knows that it says the same as the JSON: `id,step,mode,quantity,row,column,value`, counted from 1 and empty
-//! where there is none.
+//! It says the same as the JSON: `id,step,mode,quantity,row,column,value`, counted from 1 and empty if not applicable.
 
 use super::invalid::{Class, Invalid};
 use super::json::is_not_finite;

@@ -1,8 +1,7 @@
-//! What was done: the variants of the catalogue, alone or together, that explain every shown value.
+//! The diagnosis: the variants of the catalogue, alone or together, that explain every shown value.
 //!
-//! After this file the reader knows how a mistake gets its name. Each variant is run along the program's own values; the ones under
-//! which nothing is left unexplained, in the faulty cases and in the others, are named. Forms go before conventions, and these before
-//! mistakes: a filter that is right in other algebra is not called wrong.
+//! Each variant is run along the program's own values. A variant is named if it explains everything, in the faulty cases and in the
+//! others. Forms go before conventions, and conventions before mistakes: a filter that is right in different algebra is not called wrong.
 //!
 //! Where no variant explains all alone, equations are taken one after the other: every value is judged on the program's own inputs, so
 //! where enough is shown, mistakes in different equations are independent. Where too little is shown for that, all pairs are tried. Where
@@ -18,7 +17,7 @@ use crate::number::RandomRounding;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
-/// So many mistakes at once are looked for.
+/// The most mistakes that are looked for at once.
 const MOST: usize = 6;
 
 /// A case to be explained.
@@ -30,7 +29,7 @@ pub struct Evidence<'a> {
     pub passed: BTreeSet<Place>,
     /// Whether the case has a fault.
     pub is_faulty: bool,
-    /// So many steps were right but for the last.
+    /// The number of steps that were right, except the last.
     pub steps_to_fault: usize,
     /// Whether it is the beginning of another piece of evidence: what does not explain the first fault is found out early.
     pub is_beginning: bool,
@@ -49,7 +48,7 @@ impl<'a> Evidence<'a> {
     }
 }
 
-/// Pairs are looked for where the shortest faulty run has at most so many steps: on two modes of five states that takes half a minute.
+/// Pairs are tried only if the shortest faulty run has at most this many steps: with two modes of five states that takes half a minute.
 const MOST_STEPS_FOR_PAIRS: usize = 12;
 
 /// What explains the faults.
@@ -57,9 +56,9 @@ const MOST_STEPS_FOR_PAIRS: usize = 12;
 pub enum Diagnosis {
     /// There is no fault.
     Nothing,
-    /// Each of these variants alone explains all; with what is shown they cannot be told apart.
+    /// Each of these variants alone explains everything; the shown values cannot distinguish them.
     One(Vec<&'static Variant>),
-    /// These together explain all; each with those that cannot be told from it.
+    /// These together explain everything; each with those that the shown values cannot distinguish from it.
     Several(Vec<Vec<&'static Variant>>),
     /// Each of these pairs explains all.
     Pairs(Vec<[&'static Variant; 2]>),
@@ -83,7 +82,7 @@ pub enum Diagnosis {
 /// What explains some of the faulty cases, alone or together with what explains others.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Share {
-    /// Each explains the same cases; with what is shown they cannot be told apart.
+    /// Each explains the same cases; the shown values cannot distinguish them.
     pub variants: Vec<&'static Variant>,
     /// The number of cases that it explains and nothing before it does.
     pub cases: usize,

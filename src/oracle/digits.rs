@@ -1,18 +1,18 @@
-//! Numbers that lost digits on the way: printed with too few of them, or computed in single precision by a program that declares double.
+//! Lost digits: numbers printed with too few digits, or computed in single precision by a program that declares double.
 //!
-//! After this file the reader knows why every number is looked at: one that has more digits is enough to say that nothing was lost.
+//! Every number is examined: a single number with more digits shows that none were lost.
 
 use super::evidence::Answered;
 use super::observation::Observation;
 use super::subject::Precision;
 
-/// So many digits tell any two numbers of single precision apart; what has no more is not a double.
+/// This many digits distinguish any two numbers of single precision; a number with no more is not a double.
 const MOST: usize = 9;
 
-/// So many numbers must be short that should be long. One in 10⁷ doubles is short by chance.
+/// At least this many numbers that should be long must be short. One in 10⁷ doubles is short by chance.
 const LEAST: usize = 5;
 
-/// So many decimals `%f` prints. Of a number below 10⁶ a double has ten at least.
+/// The number of decimals that `%f` prints. A double below 10⁶ has at least ten.
 const DECIMALS: usize = 6;
 const SMALL: f64 = 1e6;
 
@@ -75,7 +75,7 @@ impl Longest {
     }
 }
 
-/// The significant digits of the shortest decimal that is read as this number, and those of them behind the point.
+/// The significant digits of the shortest decimal that reads as this number, and how many of them stand after the point.
 fn length(value: f64) -> (usize, usize) {
     let text = format!("{value:e}");
     let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));

@@ -99,7 +99,7 @@ impl Beginning {
     }
 }
 
-/// What an answer says to whoever looks for what was done.
+/// The evidence in an answer, for the diagnosis.
 fn evidence_of<'a>(
     report: &CaseReport,
     problem: &'a ProblemFile,

@@ -63,7 +63,7 @@ pub fn kinds() -> impl Iterator<Item = &'static str> {
 pub enum FilterFile {
     /// Linear motion and measurement.
     Kalman {},
-    /// Motion and measurement at their slopes. Format 2.
+    /// Motion and measurement by their Jacobians. Format 2.
     Extended {
         /// How often the measurement is linearised in an update; absent, once.
         #[serde(

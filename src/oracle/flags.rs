@@ -1,6 +1,4 @@
-//! The flags of the published cases.
-//!
-//! After this file the reader knows every word by which cases are marked and chosen, and what a problem with it is like.
+//! The flags that mark and select the published cases, and the property that each stands for.
 
 /// Every flag, and what a problem with it is like.
 pub const FLAGS: [(&str, &str); 58] = [

@@ -1,7 +1,6 @@
-//! Answers as files: one `ID.json` or `ID.csv` a case in a folder, and perhaps a `ready.json`.
+//! Answers as files: one `ID.json` or `ID.csv` per case in a folder, and perhaps a `ready.json`.
 //!
-//! After this file the reader knows how answers come in without a process, as a user of MATLAB has them: which names the files have, what
-//! is said of a case without a file, and that files are judged as messages are.
+//! Users of MATLAB, for example, answer without a process. Files are judged like messages; a case without a file is reported.
 
 use super::csv;
 use super::problem::ProblemFile;

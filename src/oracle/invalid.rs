@@ -1,6 +1,6 @@
 //! Why a file is refused: the place inside it, the reason, and the class of the reason.
 //!
-//! After this file the reader knows the classes by which the refusals of different programs are compared.
+//! The refusals of different programs are compared by these classes.
 
 use crate::file::shortened;
 use serde::Serialize;

@@ -1,6 +1,6 @@
 //! Judging the values of one case: each against the certified trace, and against its own equation on the program's own earlier values.
 //!
-//! After this file the reader knows when a value is right, when its error is inherited, and when it is a fault:
+//! A value is right, inherits an error, or is a fault:
 //!
 //! - an error within [`LIMIT`] times its rounding noise of the certified value is **right**;
 //! - else, within as much of what its own equation gives on the program's own inputs, it is **propagated**: the error was made before;
@@ -23,7 +23,7 @@ use crate::imm::Quantity;
 use crate::imm::record::Input;
 use std::collections::BTreeSet;
 
-/// An error of more than so many times the rounding noise is none of rounding. Right filters of other algebra and precision stay below
+/// An error larger than this multiple of the rounding noise cannot be rounding. Right filters with other algebra and precision stay below
 /// about 12, other conventions start at some 200, mistakes at 10⁷ (measured over the published cases; see `tests/oracle.rs`).
 pub const LIMIT: f64 = 100.0;
 

@@ -1,7 +1,7 @@
 //! The oracle: certified cases, traces, and the judge of other filters.
 //!
-//! After this folder the reader knows how a filter in any language is told that it is right to so many digits, or wrong in this equation,
-//! at this step, and most likely because of this.
+//! A filter in any language learns that it is right and to how many digits, or which equation is wrong, at which step, and most likely
+//! why.
 //!
 //! ```text
 //! problem file ─▶ setup ─▶ run in enclosures ─▶ certified trace ─┐

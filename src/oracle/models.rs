@@ -1,6 +1,6 @@
-//! What format 2 adds to problem files: components with units and angles, formulas, named models, and what changes from step to step.
+//! The additions of format 2 to problem files: components with units and angles, formulas, named models, and changes from step to step.
 //!
-//! After this file the reader knows the keys. What becomes of them is in `bound`, and what is refused in `well_formed`.
+//! This file has the keys. `bound` uses them, and `well_formed` checks them.
 
 use super::problem::{FilterFile, ModeFile, Rows, if_there_at_all};
 use crate::model::space::{Component, ComponentKind};

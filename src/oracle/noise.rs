@@ -1,21 +1,21 @@
-//! Rounding noise: how far rounding moves each value, found by rounding at random.
+//! Rounding noise: how far rounding moves each value, measured by Monte Carlo arithmetic.
 //!
-//! After this file the reader knows the unit in which errors are measured here. No fixed tolerance separates right from wrong: a right
-//! filter may be off by 10⁻⁷ of a standard deviation on a hard problem, and a wrong one by 10⁻⁸ on an easy one. So the same
-//! equations are run a few times in [`RandomRounding`], and how far the values scatter is the unit.
+//! Errors are measured in this unit. No fixed tolerance separates right from wrong: a right filter may be off by 10⁻⁷ of a standard
+//! deviation on a hard problem, and a wrong one by 10⁻⁸ on an easy one. So the same equations are run a few times in [`RandomRounding`],
+//! and the scatter of the values is the unit.
 
 use super::invalid::Invalid;
 use super::run::Computed;
 use super::trace::{Table, Trace};
 use crate::number::RandomRounding;
 
-/// So many runs with random rounding. With eight the greatest of the deviations is within a factor of three of a standard deviation's
+/// The number of randomly rounded runs. With eight the greatest of the deviations is within a factor of three of a standard deviation's
 /// double in more than 99 of 100 cases (Gaussian deviations), which is far below the factor of 100 at which an error counts.
 pub const RUNS: u64 = 8;
 
 /// The greatest deviation of any of the runs from the centre, for each number; infinite where a run could not be computed.
 ///
-/// `run` makes one run with random rounding, and is told its number; it is made `runs` times.
+/// `run` makes one run with random rounding, given its number; it is called `runs` times.
 ///
 /// # Errors
 ///

@@ -1,7 +1,7 @@
-//! What is seen in the answers as a whole, beside the equations of single values.
+//! Observations about the answers as a whole, beside the equations of single values.
 //!
-//! After this file the reader knows what a verdict may say before it names an equation: a program that prints few digits, answers by chance
-//! or keeps something from one problem to the next cannot be mended equation by equation.
+//! A verdict may report these before it names an equation. A program that prints few digits, answers by chance or keeps something from one
+//! problem to the next cannot be corrected equation by equation.
 
 use super::evidence::Answered;
 use super::invalid::Invalid;
@@ -30,12 +30,12 @@ pub enum Observation {
         /// The cases.
         ids: Vec<String>,
     },
-    /// Every number has at most so many significant digits.
+    /// Every number has at most this many significant digits.
     FewDigits {
         /// How many.
         digits: usize,
     },
-    /// Every number has at most so many digits behind the point.
+    /// Every number has at most this many digits after the decimal point.
     FewDecimals {
         /// How many.
         decimals: usize,

@@ -1,7 +1,7 @@
-//! The problem file: what a case gives to a filter, read, checked and put into any number system.
+//! The problem file: the inputs of a filter, read, checked and converted to any number system.
 //!
-//! After this file the reader knows the formats `immaculate-problem/1` and `/2` from the code's side (`spec/formats.md` is their
-//! description). Format 1 is format 2 without what [`super::models`] adds. What must be true of a file is in `well_formed`.
+//! The formats `immaculate-problem/1` and `/2` are described in `spec/formats.md`. Format 1 is format 2 without the additions of
+//! [`super::models`]. `well_formed` checks the conditions that a file must meet.
 
 use super::chain::CONTINUOUS_CHAIN;
 pub use super::conventions::Conventions;

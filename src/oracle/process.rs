@@ -1,7 +1,7 @@
-//! A program under test as a process that is started once and spoken to in JSON lines.
+//! A program under test as a process that is started once and exchanges JSON lines.
 //!
-//! After this file the reader knows how a program that hangs, ends, floods or answers out of order is noticed. Reading and writing
-//! happen in threads of their own, so that nothing the program does can block the check.
+//! It detects a program that hangs, ends, floods or answers out of order. Separate threads read and write, so that nothing the program
+//! does can block the check.
 
 use super::pipes::{Line, keep_last, read_lines};
 use super::problem::ProblemFile;
@@ -21,13 +21,13 @@ use std::time::{Duration, Instant};
 /// The protocol's name.
 pub const PROTOCOL: &str = "immaculate-check/1";
 
-/// So many lines wait to be read; a program that writes more is held up, so that it fills no memory.
+/// At most this many unread lines are buffered; a program that writes faster is blocked.
 const WAITING: usize = 4;
 
 /// So much of the reason that a program gives is kept, characters.
 const REASON_KEPT: usize = 500;
 
-/// So many remarks are kept.
+/// At most this many remarks are kept.
 const REMARKS: usize = 100;
 
 /// The time that a program has to end after `stop`.

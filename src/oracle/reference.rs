@@ -1,7 +1,7 @@
-//! What a case is judged by: the certified values, their units, and their rounding noise.
+//! The reference of a case: the certified values, their scales, and their rounding noise.
 //!
-//! After this file the reader knows where the noise of a value comes from, which is the unit of its errors: from runs of the same equations
-//! with random rounding, in the precision of the program under test.
+//! The noise of a value is the unit of its errors. It comes from randomly rounded runs of the same equations, in the precision of the
+//! program under test.
 
 use super::invalid::Invalid;
 use super::judge::{LIMIT, Place};
@@ -91,7 +91,7 @@ impl Run<'_> {
         Ok((computed.in_doubles(), failures))
     }
 
-    /// How far so many runs with random rounding come from the values.
+    /// How far a number of randomly rounded runs deviate from the values.
     pub(super) fn noise(&self, values: &Trace, runs: u64) -> Result<Trace, Invalid> {
         noise::spread(values, self.precision.unit_roundoff(), runs, |number| {
             // The inputs are perturbed, too, so each run has a problem of its own.

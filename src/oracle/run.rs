@@ -1,8 +1,8 @@
 //! Running a problem: by itself, or along the values of another program.
 //!
-//! After this file the reader knows the one idea on which the judging rests. The wiring runs as ever, but whenever the program under test
-//! shows a value, the computed one is kept for comparison and *the program's own* is put in its place. So each value is computed
-//! from the program's own earlier values, and where some are hidden, from the last ones that it showed.
+//! The judging rests on one idea. Whenever the program under test shows a value, the computed one is kept for comparison, and the run
+//! continues with *the program's own* value. So each value is computed from the program's own earlier values, and where some are hidden,
+//! from the last ones that it showed.
 
 use super::invalid::Invalid;
 use super::judge::Place;
@@ -69,7 +69,7 @@ fn own_values<T: Real>(quantity: Quantity, shown: &[f64], number: fn(f64) -> T, 
     (0..shown.len()).map(|index| number(shown[place(index)])).collect()
 }
 
-/// Who is told the record of each step as it is done.
+/// Called with the record of each step as soon as it is done.
 type Told<'a, T> = &'a mut dyn FnMut(Option<&Step<T, Dyn, Dyn>>);
 
 impl<T: Real> Setup<T> {
@@ -93,7 +93,7 @@ impl<T: Real> Setup<T> {
         self.exchange(Some(shown), number, triangle, &mut |_| {})
     }
 
-    /// `done` is told the record of each step, or that it could not be computed.
+    /// `done` is called with the record of each step, or with the reason why it could not be computed.
     fn exchange(&self, shown: Option<&Trace>, number: fn(f64) -> T, triangle: Triangle, done: Told<T>) -> Computed<T> {
         let mut filter = self.filter();
         let mut values = Table::empty(&self.dimensions());

@@ -1,8 +1,7 @@
-//! The natural unit of each number of a trace.
+//! The scale of each number of a trace: the unit in which its error is large or small.
 //!
-//! After this file the reader knows in what an error is said to be large or small: a mean in its standard deviation, a covariance in
-//! √(Pᵢᵢ Pⱼⱼ), an innovation in √Sᵢᵢ, a probability in itself. The units come from the problem and its certified trace, never from the
-//! program under test.
+//! A mean is measured in its standard deviation, a covariance in √(Pᵢᵢ Pⱼⱼ), an innovation in √Sᵢᵢ, a probability in itself. The scales
+//! come from the problem and its certified trace, never from the program under test.
 //!
 //! Filters with fixed gains have no covariance. What the measurement does to their means has one: the correction K ν has K S Kᵀ, which
 //! at the equilibrium is P⁻ − P. The unit of an entry of a mean, of whatever mode, is the standard deviation of its correction in the mode

@@ -1,6 +1,6 @@
-//! The JSON Schemas of the file formats, from the types and the table that read the files.
+//! The JSON Schemas of the file formats, generated from the types and the table that read the files.
 //!
-//! After this file the reader knows that the schemas in `spec/schemas/` cannot drift from the code: a test holds them against these.
+//! A test compares the schemas in `spec/schemas/` with them, so that they cannot drift from the code.
 
 use super::invalid::Class;
 use super::problem::{self, ProblemFile};

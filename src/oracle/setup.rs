@@ -1,6 +1,6 @@
-//! A problem in one number system, ready to be run, and to be varied.
+//! A problem in one number system, ready to be run and varied.
 //!
-//! After this file the reader knows how a problem file comes into any number system, each number of the file as it is, or perturbed.
+//! Each number of a problem file is converted exactly, or perturbed.
 
 use super::bound::{Bound, Functions};
 use super::chain::ChainOfRates;

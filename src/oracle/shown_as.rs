@@ -88,7 +88,7 @@ fn is_shown_as(answered: &[Answered], way: &ShownAs, quantity: Quantity, precisi
                 continue;
             }
             let meant: Vec<f64> = shown.iter().map(|value| (way.meant)(*value)).collect();
-            // What underflowed on the way cannot be told any more.
+            // Values that underflowed on the way cannot be recovered.
             if meant.iter().any(|value| !value.is_finite()) {
                 continue;
             }

@@ -1,8 +1,7 @@
-//! Modes with states of their own in a problem file: their components, and the conversions between them.
+//! Modes with different states in a problem file: their components, and the conversions between them.
 //!
-//! After this file the reader knows which conversions a problem needs: one for each ordered pair of modes whose states differ, and one from
-//! each mode whose state is not the problem's to the combined estimates. What they mean is in
-//! [`imm::state_conversion`](crate::imm::state_conversion).
+//! A problem needs one conversion for each ordered pair of modes whose states differ, and one from each mode whose state is not the
+//! problem's to the combined estimates. [`imm::state_conversion`](crate::imm::state_conversion) defines their meaning.
 
 use super::bound::{Bound, Functions, Scope};
 use super::invalid::{Class, Invalid};

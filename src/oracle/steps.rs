@@ -1,6 +1,6 @@
-//! The checks of what format 2 adds to a problem: its functions, and what changes from step to step.
+//! The checks of format 2's additions to a problem: its functions, and changes from step to step.
 //!
-//! After this file the reader knows where a file of format 1 is told that it needs format 2, and what a step may replace.
+//! A file of format 1 that needs format 2 is refused here, as is a step that replaces something that it may not.
 
 use super::invalid::{Class, Invalid};
 use super::problem::{

@@ -1,7 +1,7 @@
-//! The program under test, whatever it is: what it says of itself, and what it answers.
+//! The program under test, whatever it is: how it introduces itself, and how it answers.
 //!
-//! After this file the reader knows the trait by which a filter in Rust is checked from its own tests; a process
-//! ([`super::process`]) and a folder of answers ([`super::folder`]) implement the same.
+//! A filter in Rust is checked from its own tests through this trait. A process ([`super::process`]) and a folder of answers
+//! ([`super::folder`]) implement it too.
 
 use super::invalid::Invalid;
 use super::problem::{FORMAT, ProblemFile};
@@ -17,7 +17,7 @@ pub enum Precision {
     Double,
     /// 24 bits.
     Single,
-    /// So many decimal digits.
+    /// A number of decimal digits.
     DecimalDigits(u32),
 }
 

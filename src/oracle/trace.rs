@@ -1,7 +1,7 @@
-//! Traces in memory and as JSON: what a filter computed, step by step, under the names of [`Quantity`].
+//! Traces in memory and as JSON: the values of a filter, step by step, under the names of [`Quantity`].
 //!
-//! After this file the reader knows the format `immaculate-trace/1` from the code's side, and with how much patience the traces of other
-//! programs are read: a scalar for a 1 × 1 matrix, an object for a list of one, any nesting with the right count of numbers.
+//! This reads and writes the format `immaculate-trace/1`. Traces of other programs are read leniently: a scalar for a 1 × 1 matrix, an
+//! object for a list of one, any nesting with the right count of numbers.
 
 use super::invalid::{Class, Invalid};
 use super::json::is_not_finite;

@@ -1,7 +1,7 @@
-//! What is wrong with a problem file whose JSON or keys are wrong, and where.
+//! Errors in a problem file with wrong JSON or wrong keys, with their place.
 //!
-//! After this file the reader knows how a sentence of the JSON reader becomes one with the place inside the file. The reader of objects
-//! that have a `kind` must know the kind before it can read the rest, and forgets the places on the way; here they are found again.
+//! An error of the JSON reader becomes a sentence with the place inside the file. The reader of objects that have a `kind` must know the
+//! kind before it can read the rest, and loses the places on the way; they are recovered here.
 
 use super::invalid::{Class, Invalid};
 use super::json::quote_not_finite;

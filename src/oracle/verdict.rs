@@ -1,6 +1,4 @@
-//! The verdict on a program: how each case went, and what explains the faults.
-//!
-//! After this file the reader knows which outcomes there are, and when a program is wrong.
+//! The verdict on a program: the outcome of each case, and what explains the faults.
 
 use super::behaviour::{Behaviour, NotAsked};
 use super::diagnose::Diagnosis;

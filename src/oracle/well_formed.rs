@@ -1,7 +1,6 @@
 //! The checks that a problem file must pass before it is run.
 //!
-//! After this file the reader knows how every defect of a file becomes one sentence with the place inside the file. Shapes are checked
-//! here, values by the cycle itself.
+//! Every defect of a file becomes one sentence with the place inside the file. Shapes are checked here, values by the cycle itself.
 
 use super::invalid::{Class, Invalid};
 use super::problem::{

@@ -1,8 +1,7 @@
-//! Questions to the runs of a scenario.
+//! Questions about the runs of a scenario.
 //!
-//! After this file the reader knows how a figure comes from the runs: the errors of a filter over some steps, the difference of two filters
-//! that saw the same, their consistency, and how late they notice a change. The judges ask here, and so does the record of
-//! [`super::result`].
+//! A figure comes from the runs: the error of a filter over some steps, the paired difference of two filters, their consistency, or the
+//! delay until they notice a change. The judges and the record of [`super::result`] use these.
 //!
 //! A run in which a step could not be computed is left out of the figures of that filter.
 

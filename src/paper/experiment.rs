@@ -1,7 +1,6 @@
 //! A scenario and its runs, for judges that ask about several scenarios.
 //!
-//! After this file the reader knows how a judge gets the runs that it asks for: a scenario is run once, and every question about it is
-//! answered from the same runs, so that two answers can be compared.
+//! A scenario is run once, and every question about it is answered from the same runs, so that answers can be compared.
 
 use super::Effort;
 use super::comparison::Comparison;

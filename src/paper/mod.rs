@@ -1,8 +1,8 @@
 //! The papers: their scenarios, their published tables, their claims.
 //!
-//! After this folder the reader knows what each paper reports, what its own equations give under its own parameters, and under each
-//! choice that it leaves open. The folders follow their papers, and each begins with a guide from the paper's sections to the code; this
-//! level holds what they share.
+//! For each paper this folder shows what it reports, and what its own equations give with its own parameters and under each choice that it
+//! leaves open. The subfolders follow their papers, and each begins with a guide from the paper's sections to the code; this level holds
+//! what they share.
 //!
 //! - [`zhu2016`], [`liu2017`], [`derbez2000`], [`sustika2015`]: the papers;
 //! - [`specification`]: the papers' equations, tables, open parameters and claims, from the files in `spec/`;

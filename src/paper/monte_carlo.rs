@@ -1,8 +1,8 @@
-//! Monte-Carlo runs: on all cores, and the same whatever their number.
+//! Monte Carlo runs on all cores, with results that do not depend on their number.
 //!
-//! After this file the reader knows where the random numbers come from. Each run has a stream of its own of one named generator,
-//! ChaCha with eight rounds, keyed by the seed; a run's numbers depend on the seed and the run alone. Gaussian numbers are made by
-//! the Box-Muller transform with the portable functions of [`Real`], so that every platform draws the same.
+//! Each run has its own stream of one named generator, ChaCha with eight rounds, keyed by the seed. A run's numbers depend only on the
+//! seed and the run. The Box-Muller transform makes Gaussian numbers with the portable functions of [`Real`], so every platform draws the
+//! same.
 
 use super::simulation::{Run, Simulation};
 use crate::imm::{Imm, Step};

@@ -1,7 +1,7 @@
-//! What a cycle of the papers' filters costs, as closed formulas.
+//! The cost of one cycle of the papers' filters, as closed formulas.
 //!
-//! After this file the reader knows how many operations a cycle of each filter takes whose cost derbez2000 or sustika2015 prints or
-//! compares, under which convention, and from which parts.
+//! These are the operation counts for each filter whose cost derbez2000 or sustika2015 prints or compares, with the convention and the
+//! parts.
 //!
 //! An operation is +, −, ×, ÷, √ or one of exp, ln, sin, cos, atan2. A change of sign, a comparison and what depends on no data (2π, the
 //! weights of a rule) are free. Every matrix is full: zeros and ones are numbers like any other. The papers' programs are not printed.

@@ -1,7 +1,6 @@
-//! What the runs of a scenario show, as a record.
+//! The results of a scenario's runs, as a record.
 //!
-//! After this file the reader knows what is printed of a reproduced table, or written as JSON: [`Reproduction`] is the list of the answers
-//! that [`Comparison`] gives.
+//! A reproduced table is printed or written as JSON from a [`Reproduction`], the list of the answers of [`Comparison`].
 //!
 //! A run in which a step could not be computed is counted and named, and is left out of the error figures of that filter.
 

@@ -1,7 +1,7 @@
 //! A target that flies straight and turns, a sensor that sees it, and the filters that compete.
 //!
-//! After this file the reader knows everything that the simulations of zhu2016 and liu2017 have in common: a schedule of motions, a draw
-//! of one run's truth, measurements and initial estimate, and contestants that all see the same draw.
+//! The simulations of zhu2016 and liu2017 share this: a schedule of motions, one run's draw of truth, measurements and initial estimate,
+//! and contestants that all see the same draw.
 
 use super::monte_carlo::{Generator, follow};
 use super::simulation::{Average, Competitor, Path, Run, Simulation};

@@ -1,8 +1,7 @@
-//! What can be run, and what the statistics ask about it.
+//! The interface between simulations and statistics.
 //!
-//! After this file the reader knows how little the comparison of filters needs of a paper's scenario: names and times, what the target
-//! does when, and a run whose result depends on its number and the seed alone. Two papers share one scenario; a paper that
-//! is unlike them brings its own.
+//! The comparison of filters needs little from a paper's scenario: names and times, the target's motion over time, and a run whose result
+//! depends only on its number and the seed. Two papers share one scenario; each of the others has its own.
 
 use super::specification::Choices;
 use crate::imm::Failure;

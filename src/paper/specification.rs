@@ -1,7 +1,7 @@
-//! The papers' half of the specification, read from the files in `spec/` that are built into the program.
+//! The papers' half of the specification, read from the files in `spec/`, which are built into the program.
 //!
-//! After this file the reader knows what a paper's equations, tables, open parameters and claims look like as values, and how a
-//! scenario's choices are named: each open parameter of `spec/<paper>/scenario.toml` has a default and alternatives.
+//! A paper's equations, tables, open parameters and claims are values here. Each open parameter of `spec/<paper>/scenario.toml` has a
+//! default and alternatives, and a scenario's choices are named by them.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

@@ -1,6 +1,6 @@
-//! How a claim is judged.
+//! The verdicts on claims, and the conditions for each.
 //!
-//! After this file the reader knows the verdicts and what each of them takes. A judge computes; nothing is declared.
+//! A judge computes its verdict; nothing is declared.
 
 use super::specification::{Claim, Specification};
 use crate::statistics::Estimate;

@@ -1,6 +1,6 @@
-//! The ledger of claims for people.
+//! The ledger of claims as text.
 //!
-//! After this file the reader knows how a judged claim is printed; what the verdicts mean is in [`crate::paper::verdict`].
+//! [`crate::paper::verdict`] defines the verdicts.
 
 use super::{citation, wrapped};
 use crate::paper::specification::Specification;

@@ -1,7 +1,4 @@
-//! A reproduction for people: published and computed side by side.
-//!
-//! After this file the reader knows what each column of a reproduced table is, and which published figure stands beside which
-//! computed one.
+//! A reproduction as text: published and computed values side by side.
 
 use super::outcome::outcome;
 use super::{citation, fit_error, indent_of, standard_errors, table, wrapped};

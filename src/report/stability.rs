@@ -1,7 +1,7 @@
-//! The joint stability of two fixed-gain filters, for people and programs.
+//! The joint stability of two fixed-gain filters, as text and as JSON.
 //!
-//! After this file the reader knows what `immaculate stability` prints: the gains, the spectral radii, the verdict on both readings of the
-//! update, and the proof, so that it can be checked by hand or with another program.
+//! It prints the gains, the spectral radii, the verdict on both readings of the update, and the proof, so that a reader can check it by
+//! hand or with another program.
 
 use super::stability_proof::{Proof, word};
 use super::{table, wrapped};

@@ -1,7 +1,6 @@
 //! The fifth-degree rule of zhu2016: the centre, 2n points on the axes and 2n(n − 1) on the diagonals of the coordinate planes.
 //!
-//! After this file the reader knows the rule's points and weights as the paper numbers them, and the one weight that the
-//! paper prints twice too large.
+//! Points and weights are numbered as in the paper. One weight is printed twice too large.
 
 use super::{ExactRule, InvalidRule, along_axis, dimension_as_rational, opposite};
 use crate::number::{Field, Rational, Surd};

@@ -1,8 +1,8 @@
-//! The Gauss-Hermite product rule: m nodes a coordinate, mⁿ points, degree 2m − 1; a reference of higher degree.
+//! The Gauss-Hermite product rule: m nodes per coordinate, mⁿ points, degree 2m − 1; a reference of higher degree.
 //!
-//! After this file the reader has a rule against which the others can be measured where no closed form exists. The nodes of one
-//! coordinate are roots of a Hermite polynomial; up to m = 5 their squares and weights are surds, so the rule's moments are exact
-//! too: odd ones vanish by symmetry, even ones need the squares only, and the moments of a product are products of moments.
+//! Other rules are measured against this one where no closed form exists. The nodes of one coordinate are roots of a Hermite polynomial.
+//! Up to m = 5 their squares and weights are surds, so the rule's moments are exact too: odd ones vanish by symmetry, even ones need only
+//! the squares, and moments of a product are products of moments.
 
 use super::{InvalidRule, Rule};
 use crate::matrix::{Holds, Shapes};

@@ -11,10 +11,10 @@
 //! ∫ f(x) e^(−xᵀx) dx = ∫ r^(n−1) e^(−r²) ∫ f(r s) dσ(s) dr,     f(x) = g(√2 x) / π^(n/2)
 //! ```
 //!
-//! After this folder the reader knows every rule that the papers use, where its points come from, and how far it is exact.
-//! A rule is written down once, in exact form, straight from its paper ([`ExactRule`]: coordinates are surds, weights
-//! rationals), proven in that form ([`moment`] for one dimension at a time, [`sphere`] for every dimension at once), and
-//! only then turned into the numbers of a filter ([`Rule`]).
+//! These are all the rules that the papers use, with the origin of their points and their degree of exactness. A rule is written down
+//! once, in exact form, straight from its paper ([`ExactRule`]: coordinates are surds, weights are rationals). It is proven in that form
+//! ([`moment`] for one dimension at a time, [`sphere`] for every dimension at once) and only then turned into the numbers of a filter
+//! ([`Rule`]).
 //!
 //! | rule                                     | points      | degree | file              |
 //! |------------------------------------------|-------------|--------|-------------------|

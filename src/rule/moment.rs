@@ -1,8 +1,7 @@
 //! Exact moments of rules in one dimension n, and the degree that they prove.
 //!
-//! After this file the reader knows what "of degree five" means and how it is decided without a tolerance: a rule has degree d
-//! when it integrates every monomial of degree up to d exactly, and some monomial of degree d + 1 wrongly. Coordinates are surds
-//! and weights rationals, so both sides are exact numbers and are compared as such.
+//! A rule has degree d if it integrates every monomial of degree up to d exactly and some monomial of degree d + 1 wrongly. No tolerance
+//! is needed: coordinates are surds and weights are rationals, so both sides are exact numbers and are compared exactly.
 
 use super::ExactRule;
 use crate::number::{Field, Rational, Surd};

@@ -1,6 +1,4 @@
-//! The names under which rules are asked for.
-//!
-//! After this file the reader knows which rules can be asked for, and what each name stands for.
+//! The names of the rules.
 
 use super::gauss_hermite::gauss_hermite;
 use super::unscented::{Parameters, unscented};

@@ -1,7 +1,6 @@
-//! The weights that the papers print wrongly, as they are printed.
+//! The misprinted weights of the papers, exactly as printed.
 //!
-//! After this file the reader can run what the papers literally say, and see in which moment it breaks. Nothing else in this
-//! crate uses these forms but the tests and the ledger of claims.
+//! They can be run to see which moment they get wrong. Only the tests and the ledger of claims use them.
 
 use super::{ExactRule, InvalidRule, dimension_as_rational, fifth_degree, simplex};
 use crate::number::{Field, Rational};

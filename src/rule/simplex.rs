@@ -1,8 +1,8 @@
 //! The fifth-degree simplex rule of liu2017: the centre, the vertices of a regular simplex, the midpoints of its edges, and their
 //! mirror images.
 //!
-//! After this file the reader knows how n² + 3n + 3 points reach the degree of the 2n² + 1 of [`fifth_degree`](super::fifth_degree),
-//! and which of the paper's three printings of their weights is right: none.
+//! n² + 3n + 3 points reach the degree of the 2n² + 1 points of [`fifth_degree`](super::fifth_degree). The paper prints their weights
+//! three times, and each time wrongly.
 
 use super::{ExactRule, InvalidRule, dimension_as_rational, opposite};
 use crate::number::{Field, Rational, Surd};

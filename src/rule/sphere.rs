@@ -2,8 +2,8 @@
 //!
 //! (At n = 1 the sphere is two points and has no harmonics beyond degree one; the recurrence below divides by n − 1.)
 //!
-//! After this file the reader knows why a rule's degree can be proven without its coordinates. The rules here are a centre and
-//! points ±s on one sphere. Odd moments vanish by symmetry. For even ones two things decide:
+//! The degree of such a rule can be proven without its coordinates. The rules here consist of a centre and points ±s on one sphere. Odd
+//! moments vanish by symmetry. Two conditions decide the even ones:
 //!
 //! 1. **The radial moments.** With weight W on the sphere of radius r, E r^(2k) of the Gaussian must be W r^(2k):
 //!    n for k = 1, n(n + 2) for k = 2, n(n + 2)(n + 4) for k = 3.

@@ -1,7 +1,6 @@
 //! The third-degree rule: 2n points on the axes, equal weights.
 //!
-//! After this file the reader knows the rule of the cubature Kalman filter, the smallest fully symmetric rule that gets mean
-//! and covariance right.
+//! This is the rule of the cubature Kalman filter, the smallest fully symmetric rule with the right mean and covariance.
 
 use super::{ExactRule, InvalidRule, along_axis, dimension_as_rational, opposite};
 use crate::number::{Field, Rational, Surd};

@@ -1,6 +1,6 @@
 //! The unscented rule: the mean and 2n points on the axes, with one or three parameters.
 //!
-//! After this file the reader knows both parametrisations of the unscented transform and when its centre weight is negative.
+//! Both parametrisations of the unscented transform are here. The centre weight can be negative.
 
 use super::{ExactRule, InvalidRule, Rule, along_axis, dimension_as_rational, opposite};
 use crate::matrix::{Holds, Shapes};

@@ -1,7 +1,6 @@
-//! Is a filter as good as it says? Normalised squared errors and their bounds.
+//! Is a filter as accurate as it claims? Normalised squared errors and their bounds.
 //!
-//! After this file the reader knows the two tests of a filter's own covariance: against the truth (NEES) and, without one, against the
-//! measurements (NIS).
+//! Two tests check a filter's own covariance: one against the truth (NEES), and one without the truth, against the measurements (NIS).
 //!
 //! A matched filter's error is Gaussian with the covariance that the filter reports, so its square in that metric is χ² with as many
 //! degrees of freedom as it has components. A mean above the bounds says that the filter is over-confident, one below that it is

@@ -1,6 +1,4 @@
-//! How long a change of motion goes unnoticed.
-//!
-//! After this file the reader knows what "captures the change in time" is measured by.
+//! The delay until a filter notices a change of motion: a measure of how it "captures the change in time".
 
 /// Steps from a change of motion until the probability of the true mode exceeds one half.
 ///

@@ -1,7 +1,6 @@
-//! A figure with its standard error.
+//! A Monte Carlo figure with its standard error.
 //!
-//! After this file the reader knows how uncertain a Monte-Carlo figure is, and why two filters that saw the same noise can be told
-//! apart by differences much smaller than either figure's own uncertainty.
+//! Two filters that saw the same noise can be distinguished by differences much smaller than the uncertainty of either figure.
 //!
 //! Runs are independent of each other, steps within a run are not: every standard error here comes from one number a run.
 

@@ -1,8 +1,7 @@
-//! The percentage fit error: how large the error of a path is beside the path itself.
+//! The percentage fit error: the size of a path's error relative to the path itself.
 //!
-//! After this file the reader knows what sustika2015 measures its filters by, the readings that its formula leaves open, and what the
-//! measure depends on besides the filter: the norm of the true positions is that of their distances from the radar, so that the same
-//! errors count for more near to it.
+//! sustika2015 measures its filters by it, and leaves several readings of its formula open. The measure does not depend on the filter
+//! alone: the norm of the true positions is the norm of their distances from the radar, so the same errors count for more near the radar.
 
 /// Percentage fit error of a coordinate — sustika2015 (37)-(38).
 ///

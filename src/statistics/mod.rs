@@ -1,7 +1,6 @@
-//! What many runs show: errors, their uncertainty, consistency, and the delay of detection.
+//! Statistics over many runs: errors, their uncertainty, consistency, and the delay of detection.
 //!
-//! After this folder the reader knows every figure of the reproduced tables: how it is computed from the runs, and how far it would
-//! move if the runs were drawn again.
+//! Every figure of the reproduced tables is computed here, with the amount by which it would change if the runs were drawn again.
 //!
 //! - [`rmse`]: root-mean-square errors over runs and over time;
 //! - [`fit_error`]: errors beside the path itself, in per cent;

@@ -1,6 +1,4 @@
-//! Root-mean-square errors.
-//!
-//! After this file the reader knows the two averages behind every error table: over the runs at one step, and over the steps.
+//! Root mean square errors: the two averages behind every error table, over the runs at one step and over the steps.
 
 /// Root-mean-square error over the runs at one step — zhu2016 (64), liu2017 (33).
 ///

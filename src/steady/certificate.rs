@@ -1,7 +1,7 @@
-//! Certificates of joint stability, and of instability: small facts that anyone can check and that decide the question.
+//! Certificates of joint stability and instability: small facts that decide the question and that anyone can check.
 //!
-//! After this file the reader knows what proves that filters stay stable however they are switched, and what proves that they do not. The
-//! check is a few multiplications and pivots in exact or enclosing arithmetic; it trusts nothing of the search that found the certificate.
+//! One kind proves that filters stay stable however they are switched; the other proves that they do not. Checking takes a few
+//! multiplications and pivots in exact or enclosing arithmetic, and does not trust the search that found the certificate.
 //!
 //! | certificate  | says                                                                 | is checked by                              |
 //! |--------------|----------------------------------------------------------------------|--------------------------------------------|

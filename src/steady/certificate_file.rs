@@ -1,8 +1,8 @@
 //! Certificates as files, which anyone can check with a few multiplications of fractions.
 //!
-//! After this file the reader knows the format `immaculate-certificate/1`. A file names the filters by what decides their gains (damping
-//! roots, or noises and scan time) and the proof; the matrices are computed again from the former, so that a proof of other filters proves
-//! nothing. Every number is a fraction in quotes, "−1.5" and "-3/2" alike.
+//! This is the format `immaculate-certificate/1`. A file names the filters by the inputs of their gains (damping roots, or noises and scan
+//! time), and gives the proof. The matrices are recomputed from these inputs, so a proof about other filters proves nothing. Every number
+//! is a fraction in quotes; "−1.5" and "-3/2" are the same.
 
 use super::certificate::{Edge, NotProven, Product, Quadratics};
 use super::verdict::{Filters, LETTERS, StabilityVerdict, word_text};

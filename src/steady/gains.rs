@@ -1,8 +1,8 @@
 //! The steady gains of the two models of derbez2000 in closed form.
 //!
-//! After this file the reader knows that one number decides them: the tracking index Λ, how far the target's noise moves it in a scan
-//! against how well it is measured. Another number is better to compute with, the *damping root* θ = √(1 − α): every gain is a polynomial
-//! or a small fraction in it, so that a rational θ gives a filter in rationals.
+//! One number decides them: the tracking index Λ, which compares the target's random motion in one scan with the accuracy of the
+//! measurement. Another number is easier to compute with, the *damping root* θ = √(1 − α): every gain is a polynomial or a small fraction
+//! in θ, so a rational θ gives a filter in rationals.
 //!
 //! ```text
 //!                          Λ                    α         β             γ

@@ -1,7 +1,6 @@
-//! Systems of linear equations of any size, by elimination.
+//! Systems of linear equations of any size, solved by elimination.
 //!
-//! After this file the reader knows how the Lyapunov equation is solved exactly, and what the doubling iteration of the Riccati equation
-//! divides by.
+//! They solve the Lyapunov equation exactly, and serve the division in the doubling iteration of the Riccati equation.
 
 use super::polynomial::MatrixRows;
 use crate::matrix::{Holds, Shapes, rows};

@@ -1,6 +1,6 @@
 //! The long-term error of the IMM filter of constant velocity and constant acceleration: the algorithm of derbez2000.
 //!
-//! After this file the reader knows the six steps as they are printed, what is corrected in them, and what stays an approximation.
+//! The six steps appear as printed, with the corrections marked. The algorithm remains an approximation.
 //!
 //! | step | printed                                                      | corrected                                               |
 //! |------|--------------------------------------------------------------|---------------------------------------------------------|

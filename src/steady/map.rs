@@ -1,7 +1,7 @@
-//! The stability map: which pairs of noises make two filters that are stable together.
+//! The stability map: for which pairs of noises two filters are stable together.
 //!
-//! After this file the reader knows the map over the tracking indices of the two filters. Every point is a pair of short rational damping
-//! roots, so that every verdict but "undecided" is a theorem about exact numbers.
+//! The map covers the tracking indices of the two filters. Every point is a pair of short rational damping roots, so every verdict except
+//! "undecided" is a theorem about exact numbers.
 
 use super::gains;
 use super::pair::{frozen_matrix, mixing};

@@ -1,6 +1,6 @@
-//! A filter with a fixed gain on a target that it does not model: how far it lags, and how much it errs in the long run.
+//! A fixed-gain filter on a target that it does not model: its lag, and its long-term error.
 //!
-//! After this file the reader knows equation (7) of derbez2000, its solution, and what it needs in order to exist.
+//! Equation (7) of derbez2000, its solution, and the conditions for its existence.
 //!
 //! ```text
 //! e₍n+1₎ = A₊ eₙ + b₊ − K₊ v₍n+1₎,   A₊ = (I − K₊H) F,   b₊ = (I − K₊H) b,   b = ΔF xₙ = a [t²/2, t, 1]ᵀ

@@ -1,7 +1,7 @@
-//! The steady state: filters whose gains have settled, and whether what they compute stays bounded.
+//! The steady state: filters with settled gains, and whether their estimates stay bounded.
 //!
-//! After this folder the reader knows where fixed gains come from, what they do to a target that moves otherwise, and when several
-//! such filters that exchange their estimates are stable together.
+//! This folder derives fixed gains and their effect on a target that moves otherwise, and decides when several such filters are stable
+//! together while they mix their estimates.
 //!
 //! - [`gains`]: the closed forms of the α-β and α-β-γ filters;
 //! - [`riccati`]: the Riccati equation, by recursion and by doubling, and the proof of its solution;

@@ -1,6 +1,6 @@
-//! The two fixed-gain filters of derbez2000 and what becomes of their errors when they exchange estimates.
+//! The two fixed-gain filters of derbez2000, and the growth of their errors when they mix their estimates.
 //!
-//! After this file the reader knows three criteria of stability and which question each of them answers.
+//! There are three criteria of stability, and each answers a different question.
 //!
 //! Between two measurements filter j starts from the mixed estimate, so its error without noise is eⱼ ↦ Aⱼ Σᵢ μᵢ∣ⱼ eᵢ, Aⱼ = (I − Kⱼ H) Fⱼ:
 //!

@@ -1,7 +1,6 @@
-//! Moment matching as a perturbation of fixed gains: what is right in the argument of derbez2000, and where it breaks.
+//! Moment matching as a perturbation of fixed gains: which part of derbez2000's argument is right, and where it breaks.
 //!
-//! After this file the reader knows how far a gain moves when a mixed covariance replaces the filter's own, and that nothing keeps that
-//! movement small when one mode dominates.
+//! A gain moves if a mixed covariance replaces the filter's own, and nothing keeps this change small when one mode dominates.
 //!
 //! The paper's argument has four steps, each of which is a function here:
 //!

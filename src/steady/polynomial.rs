@@ -1,7 +1,7 @@
 //! The characteristic polynomial of a matrix, and whether all its roots are inside the unit circle.
 //!
-//! After this file the reader knows how the stability of a matrix is decided without computing an eigenvalue: by additions and
-//! multiplications alone, so that in exact rational arithmetic the answer is a proof, and on enclosures a proof or no answer.
+//! The stability of a matrix is decided without computing an eigenvalue, by additions and multiplications alone. In exact rational
+//! arithmetic the answer is a proof; on enclosures it is a proof or no answer.
 //!
 //! A matrix is a list of rows here, of any size: the frozen criterion joins several filters into one matrix.
 

@@ -1,7 +1,7 @@
-//! What a sensor does not see of a motion, and what a noise does not reach: detectability and stabilisability, exactly.
+//! Which part of a motion a sensor does not see, and a noise does not reach: detectability and stabilisability, exactly.
 //!
-//! After this file the reader knows why a filter may have no steady state, with the part of the state that is at fault. No eigenvalue is
-//! computed: the part is found by elimination, and whether it decays is asked of its characteristic polynomial.
+//! A filter may have no steady state; this file finds the part of the state that is at fault. No eigenvalue is computed: elimination finds
+//! the part, and its characteristic polynomial shows whether it decays.
 
 use super::polynomial::{MatrixRows, characteristic_polynomial};
 use crate::number::{Field, Rational};

@@ -1,7 +1,6 @@
-//! The Riccati equation of the steady Kalman filter: two ways to its solution, and a proof that it is the one.
+//! The Riccati equation of the steady Kalman filter: two ways to solve it, and a proof that the solution is the right one.
 //!
-//! After this file the reader knows when a Kalman filter has a steady state, how it is found, and how two rational matrices prove
-//! that it exists, is the only one that stabilises, and lies between them.
+//! Two rational matrices prove that the steady state exists, is the only stabilising one, and lies between them.
 //!
 //! ```text
 //! P = f(P),   f(P) = F (P − P Hᵀ (H P Hᵀ + R)⁻¹ H P) Fᵀ + Q         P: predicted covariance

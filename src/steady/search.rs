@@ -1,8 +1,8 @@
-//! The search for certificates, in doubles: what it finds is worth nothing until [`super::certificate`] has checked it.
+//! The search for certificates, in doubles: its results count only after [`super::certificate`] has checked them.
 //!
-//! After this file the reader knows how a product that grows is found (by trying), and how quadratic forms that shrink are found: as the
-//! point farthest inside a convex set, by Newton's method on a barrier. A library for semidefinite programming would bring a linear algebra
-//! library in another language with it; the sets here have a few dozen unknowns.
+//! Trial finds a product that grows. Quadratic forms that shrink are found as the point farthest inside a convex set, by Newton's method
+//! on a barrier. A library for semidefinite programming would bring a linear algebra library in another language with it; the sets here
+//! have a few dozen unknowns.
 
 use super::certificate::{Edge, Product, Quadratics};
 use super::pair::product;

@@ -1,7 +1,7 @@
-//! The long-term error of the IMM filter as a simulation shows it, and the grids of the two figures of derbez2000.
+//! The long-term error of the IMM filter from simulation, and the grids of the two figures of derbez2000.
 //!
-//! After this file the reader knows what the algorithm of [`super::long_term`] is measured against, and that the answer can depend on how
-//! the run begins: a filter that starts at the truth, and one for which the manoeuvre begins with the run, need not end the same way.
+//! The algorithm of [`super::long_term`] is measured against it. The answer can depend on the start of the run: a filter that starts at
+//! the truth, and one for which the manoeuvre begins with the run, need not end the same way.
 
 use super::long_term::{Form, Setting, predict};
 use crate::filter::Filter;

@@ -1,6 +1,6 @@
-//! A filter's recursion undone: its estimate as a sum over all measurements so far.
+//! A filter's recursion unrolled: its estimate as a sum over all measurements so far.
 //!
-//! After this file the reader knows in which order the closed loops of a filter multiply, and that the printed product has another.
+//! The closed loops of a filter multiply in a definite order; the printed product has another order.
 
 use crate::number::Field;
 use nalgebra::{SMatrix, SVector};

@@ -1,7 +1,6 @@
-//! Whether two fixed-gain filters that exchange estimates are stable: proven, refuted, or undecided.
+//! Whether two fixed-gain filters that mix their estimates are stable: proven, refuted, or undecided.
 //!
-//! After this file the reader knows how a pair of filters is named, by damping roots or by noises, and what becomes of it: two matrices,
-//! of which [`super::closed_loops`] decides.
+//! A pair of filters is named by damping roots or by noises; what becomes of it are two matrices, of which [`super::closed_loops`] decides.
 
 use super::certificate::{NotProven, Product, Quadratics};
 pub use super::closed_loops::{BITS, Depth, StabilityVerdict};

@@ -302,7 +302,7 @@ class CombinedWithPredictedProbabilities:
 
 
 class StatesMixedUnconverted:
-    """One list of states for all modes: whoever mixes them does not know what they mean."""
+    """One list of states for all modes: the mixing does not know what they mean."""
 
     def mixed(self, mode):
         return mixture(mode.mixing_probabilities, self.estimates, 0 * self.angles[mode.index])

@@ -31,7 +31,7 @@ immaculate report --runs 2 --out "$work/site"
 sed 's|</main>|<img src="http://127.0.0.1:9/seen"></main>|; s|default-src .none.; ||' "$work/site/index.html" >"$work/asking.html"
 sed 's|</main>|<p id="content">again</main>|' "$work/site/index.html" >"$work/invalid.html"
 
-# Whether a page asks the network for anything. The browser's own questions to its maker are none of the page's.
+# Whether a page asks the network for anything. The browser's own requests to its maker are not the page's.
 asks() {
     chromium --headless --no-sandbox --disable-gpu --no-first-run --disable-background-networking --disable-component-update \
         --disable-sync --user-data-dir="$work/profile-$2" --log-net-log="$work/net-$2.json" --dump-dom "file://$1" \

@@ -124,7 +124,7 @@ impl Frame {
         self.inside(drawn, "rect", colour)
     }
 
-    /// Some points that are drawn are those values, and all of them: each is within so many pixels of one of the others.
+    /// Some points that are drawn are those values, and all of them: each is within a number of pixels of one of the others.
     pub fn assert_through(&self, points: &[(f64, f64)], values: &[(f64, f64)], pixels: f64) {
         let inside = |(x, y): (f64, f64)| (x, y.clamp(self.top, self.bottom));
         let expected: Vec<_> = values.iter().map(|value| inside(self.at(*value))).collect();

@@ -21,7 +21,7 @@ class Undecided(Exception):
 
 
 def set_bits(bits):
-    """All balls from here on have midpoints of so many bits."""
+    """All balls from here on have midpoints of this many bits."""
     ctx.prec = bits
 
 

@@ -155,7 +155,7 @@ def prove_unstable(proof, matrices):
     """The product of the word's letters, the first acting first, has an eigenvalue of at least `radius`, which is above one."""
     radius = number(proof["radius"])
     demand(radius > 1, "the radius is not above one")
-    demand(proof["word"] and set(proof["word"]) <= {"v", "a"}, "the word is none of v and a")
+    demand(proof["word"] and set(proof["word"]) <= {"v", "a"}, "the word is not made of v and a")
     product = identity()
     for letter in proof["word"]:
         product = matrices[letter] * product

@@ -126,7 +126,7 @@ def check_numbers(problem, trace, report):
 
 
 def attempt(raw, trace, bits):
-    """The three sections of a trace against a run with so many bits."""
+    """The three sections of a trace against a run with a number of bits."""
     return compared(trace, *computed(raw, bits))
 
 
@@ -163,7 +163,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--case", action="extend", nargs="+", metavar="ID", help="only these cases")
     parser.add_argument("--self-test", action="store_true", help="whether mistakes would be noticed")
-    parser.add_argument("--drawn", type=int, metavar="N", help="so many problems drawn at random, certified by the program IMMACULATE")
+    parser.add_argument("--drawn", type=int, metavar="N", help="check N problems drawn at random, certified by the program IMMACULATE")
     options = parser.parse_args()
     if options.self_test:
         import mistakes

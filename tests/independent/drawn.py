@@ -24,7 +24,7 @@ FORMAT_POINT = 2.0**-200  # what is smaller than this part of its unit may be ce
 
 
 def main(count):
-    """Draws so many problems; gives the number of those in which something is not proven."""
+    """Draws a number of problems; returns the number of those in which something is not proven."""
     program = shlex.split(os.environ.get("IMMACULATE", "cargo run --quiet --release --locked --"))
     failures = numbers = 0
     with tempfile.TemporaryDirectory() as folder:

@@ -29,7 +29,7 @@ BITS = 2048  # enough for every short case, its zeros included
 SHOWN = 40
 ANSWERS = 12
 KINDS = 4
-LONG = 6  # of longer runs, so many steps are drawn
+LONG = 6  # the number of steps drawn from longer runs
 
 
 def main():

@@ -21,7 +21,7 @@ class Rule:
 
 
 def rule_of(filter, size):
-    """The rule that a filter asks for, for a state of so many entries, at the present precision."""
+    """The rule that a filter asks for, for a state of a given size, at the present precision."""
     if filter["kind"] == "unscented":
         return unscented(size, filter["alpha"], filter["beta"], filter["kappa"], ctx.prec)
     return cubature(filter["rule"], size, ctx.prec)

@@ -1,7 +1,7 @@
-//! Angles, and measurements that are strongly curved: where wrapping and conventions show.
+//! Angles and strongly curved measurements: where wrapping and conventions show.
 //!
-//! After this file the reader knows the problems in which a bearing crosses ±π, with their mirror images, and those in which the target is
-//! so near to the sensor that rules, square roots and means of angles give visibly different answers.
+//! In some problems a bearing crosses ±π, with mirror images; in others the target is so near to the sensor that rules, square roots and
+//! means of angles give visibly different answers.
 
 use super::draft::{Draft, covariance, filter, map, rounded, unscented};
 use super::scene::{RADAR_TRACK, radar};

@@ -1,6 +1,6 @@
-//! What is asked of every kind of filter: for each behaviour and kind that have no problem elsewhere, one that is made of the kind's scene.
+//! Problems for every kind of filter: one for each behaviour and kind without a problem elsewhere, made from the kind's scene.
 //!
-//! After this file the reader knows each behaviour as a change of a scene: the same change, whatever the filter.
+//! Each behaviour is the same change of a scene, whatever the filter.
 
 use super::angles::{mirrored, west};
 use super::converted::converted;
@@ -29,7 +29,7 @@ pub fn all() -> Vec<ProblemFile> {
     .concat()
 }
 
-/// A kind of filter by the name of its problems, with its scene of so many steps, and the flags of that scene.
+/// A kind of filter by the name of its problems, with its scene of a number of steps, and the flags of that scene.
 fn scene(kind: &'static str, steps: usize) -> (Draft, Vec<&'static str>) {
     let seen = |draft: Draft| draft.sees(&RADAR_TRACK[..steps]);
     let in_plane = |draft: Draft| draft.sees(&PLANE_TRACK[..steps]);

@@ -1,7 +1,7 @@
 //! The Markov chain, missed detections and outliers: what moves the probabilities, and what must not.
 //!
-//! After this file the reader knows the problems that are hard for the probabilities: modes that cannot be reached or left, probabilities
-//! next to zero and one, steps without a detection, and measurements that no mode explains.
+//! These problems are hard for the probabilities: modes that cannot be reached or left, probabilities next to zero and one, steps without
+//! a detection, and measurements that no mode explains.
 
 use super::draft::{covariance, estimate, mode, rows, unscented};
 use super::scene::{PLANE_TRACK, RADAR_TRACK, axis, plane, radar, scalar};

@@ -1,7 +1,6 @@
-//! The values that say how consistent a filter is: the squares of the innovation and of the error, in units of their covariances.
+//! The consistency of a filter: the squares of the innovation and of the error, in units of their covariances.
 //!
-//! After this file the reader knows that both are asked for in whole steps, and that the error is asked for in steps whose true state is
-//! known.
+//! Both are asked in whole steps; the error is asked only in steps whose true state is known.
 
 use super::draft::Draft;
 use super::extended;

@@ -1,8 +1,7 @@
 //! Converted measurements, and modes of unequal dimensions, with the models of sustika2015.
 //!
-//! After this file the reader knows the problems in which range and bearing become a position before a filter uses them, and those in which
-//! constant velocity and constant acceleration share one state: across ±π above all, where a converted measurement has nothing to wrap and
-//! an unscented filter has.
+//! In some problems range and bearing become a position before a filter uses them. In others constant velocity and constant acceleration
+//! share one state, above all across ±π, where a converted measurement needs no wrapping but an unscented filter does.
 
 use super::draft::{Draft, covariance, estimate, mode, rounded_to, rows, unscented};
 use super::numbers::rounded_rows;

@@ -1,6 +1,6 @@
-//! Process and measurement noise that have something in common.
+//! Correlated process and measurement noise.
 //!
-//! After this file the reader knows that two modes may have it and a third not, and that a missing entry takes its part of it along.
+//! Two modes may have it and a third not. A missing entry removes its part of the correlation.
 
 use super::draft::{Draft, rounded, rows};
 use super::extended::extended;

@@ -1,8 +1,7 @@
-//! How a problem is written down in a few lines.
+//! A short notation for problems.
 //!
-//! After this file the reader knows where the numbers of the published problems come from: short decimals as they stand, covariances
-//! from standard deviations and correlations, and, where a formula gives a number, its first twelve significant digits. The rounded
-//! number *is* the input.
+//! The numbers of the published problems are short decimals, covariances from standard deviations and correlations, and, if a formula
+//! gives a number, its first twelve significant digits. The rounded number *is* the input.
 
 use immaculate::oracle::models::ModelParameters;
 use immaculate::oracle::problem::{
@@ -18,7 +17,7 @@ pub fn rounded(value: f64) -> f64 {
     rounded_to(value, DIGITS)
 }
 
-/// The double nearest to the decimal with so many significant digits; a zero has no sign.
+/// The double nearest to the decimal with a number of significant digits; a zero has no sign.
 pub fn rounded_to(value: f64, digits: usize) -> f64 {
     let places = digits - 1;
     format!("{value:.places$e}").parse().unwrap_or(value) + 0.0
@@ -204,7 +203,7 @@ impl Draft {
         self
     }
 
-    /// So many steps without a detection.
+    /// A number of steps without a detection.
     pub fn misses(self, steps: usize) -> Self {
         self.sees_or_misses::<1>(&vec![None; steps])
     }

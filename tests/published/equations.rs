@@ -1,8 +1,7 @@
-//! Single equations: problems in which all but one equation is trivial.
+//! Single equations: problems in which every equation but one is trivial.
 //!
-//! After this file the reader knows how an equation is seen alone. Mixing: nothing moves and nothing is detected. Likelihood: the chain
-//! stays where it is, so that only likelihoods move the probabilities. Combination: the chain stays, nothing moves, nothing is detected.
-//! Update: there is one mode.
+//! Mixing: nothing moves and nothing is detected. Likelihood: the Markov chain stays where it is, so that only likelihoods move the
+//! probabilities. Combination: the chain stays, nothing moves, nothing is detected. Update: there is one mode.
 
 use super::draft::{Draft, covariance, estimate, filter, identity, mode, rows, unscented};
 use super::scene::{PLANE_TRACK, axis, plane, scalar};

@@ -1,7 +1,7 @@
 //! Extended filters, several sensors, and steps that differ: problems of format 2.
 //!
-//! After this file the reader knows the scenes of the papers' filters once more with Jacobians, a turn whose rate is in the state,
-//! headings, and steps that differ.
+//! They repeat the scenes of the papers' filters with Jacobians, and add a turn whose rate is in the state, headings, and steps that
+//! differ.
 
 use super::draft::{Draft, covariance, map, rounded, rows};
 use super::scene::{PLANE_TRACK, RADAR_TRACK, plane, radar};

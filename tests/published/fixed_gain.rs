@@ -1,8 +1,8 @@
-//! Filters with fixed gains, and the scenario of derbez2000 that they are from.
+//! Filters with fixed gains, and the scenario of derbez2000 from which they come.
 //!
-//! After this file the reader knows the problems in which gains and innovation covariances are inputs: generic ones, whose gains are near
-//! the equilibrium of each mode's F, Q, H and R and short, and runs along one coordinate of a target, whose gains are those of the closed
-//! forms. Nothing reads Q and R there; the same runs by Kalman filters read them.
+//! Gains and innovation covariances are inputs. Some problems are generic, with short gains near the equilibrium of each mode's F, Q, H
+//! and R. Others are runs along one coordinate of a target, with the gains of the closed forms. Nothing reads Q and R there; the same runs
+//! with Kalman filters do.
 
 use super::draft::{Draft, covariance, estimate, filter, mode, rounded, rounded_to, rows};
 use super::numbers::rounded_rows;

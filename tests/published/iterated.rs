@@ -1,7 +1,6 @@
 //! Iterated extended filters: the measurement is linearised where the estimate turns out to be.
 //!
-//! After this file the reader knows that a filter of one mode may iterate beside others that do not, and that strong curvature is what
-//! it is for.
+//! One mode's filter may iterate while others do not. Iteration matters most for strong curvature.
 
 use super::draft::{Draft, covariance};
 use super::extended::extended;

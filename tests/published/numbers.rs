@@ -1,6 +1,6 @@
-//! Numbers that are hard on arithmetic: large positions, small and large units, covariances that are nearly or quite singular.
+//! Hard arithmetic: large positions, small and large units, nearly or exactly singular covariances.
 //!
-//! After this file the reader knows the problems on which a right filter may lose digits, and how the same scene looks in other units.
+//! A right filter may lose digits here. The same scene also appears in other units.
 
 use super::draft::{Draft, covariance, filter, map, rounded, rows, square};
 use super::scene::{PLANE_TRACK, RADAR_TRACK, SENSOR, plane, radar};

@@ -1,6 +1,6 @@
-//! Two modes of constant velocity in the plane that differ in their noise, with positions measured: what most programs are built for.
+//! Two modes of constant velocity in the plane that differ in their noise, with measured positions: the most common tracker.
 //!
-//! After this file the reader knows the common tracker: n = 4, m = 2, a quiet mode and a noisy one, zeros wherever the two axes meet.
+//! n = 4, m = 2, a quiet mode and a noisy one, and zeros wherever the two axes meet.
 
 use super::draft::{Draft, estimate, map, mode, rounded, rows, square};
 use immaculate::oracle::problem::{EstimateFile, ModeFile, ProblemFile, Rows};

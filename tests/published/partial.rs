@@ -1,7 +1,6 @@
-//! Measurements of which an entry is missing, and estimates and measurements that are exact in a direction: problems of format 2.
+//! Measurements with a missing entry, and estimates and measurements that are exact in a direction: problems of format 2.
 //!
-//! After this file the reader knows that neither asks for another equation: a measurement has the rows that are there, and of all
-//! covariances only that of the innovation must be definite.
+//! Neither needs another equation: a measurement has the remaining rows, and only the innovation covariance must be definite.
 
 use super::draft::{Draft, filter, map, rows, unscented};
 use super::scene::{PLANE_TRACK, RADAR_TRACK, axis, plane, radar};

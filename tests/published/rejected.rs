@@ -1,7 +1,7 @@
 //! Problems that must be refused.
 //!
-//! After this file the reader knows one or two defects of each class. Each problem is a published one in which exactly one thing is wrong,
-//! so that a program that refuses it refuses it for that.
+//! There are one or two defects of each class. Each problem is a published one with exactly one thing wrong, so that a program can refuse
+//! it only for that reason.
 
 use super::converted::converted;
 use super::draft::{Draft, seen};

@@ -1,7 +1,7 @@
 //! The rules: one step of one mode with range and bearing, for each rule and dimension.
 //!
-//! After this file the reader knows the problems by which the points and weights of a rule are seen alone. The target is so near
-//! that the measurement is curved over the width of its estimate, and so every rule has its own answer.
+//! They isolate the points and weights of a rule. The target is so near that the measurement is curved over the width of its estimate, and
+//! so every rule has its own answer.
 
 use super::draft::{Draft, filter, unscented};
 use super::scene::{buoy, derivatives, radar, scalar};

@@ -1,8 +1,7 @@
 //! Runs: the two papers' scenarios, step by step.
 //!
-//! After this file the reader knows how a long problem is made: modes, chain and noise of a paper's scenario at its defaults,
-//! measurements and initial estimate of one draw from a named generator, all rounded. The rounded numbers are the problem; nothing of
-//! the draw is needed to use it.
+//! A long problem takes modes, Markov chain and noise from a paper's scenario at its defaults, and measurements and initial estimate from
+//! one draw of a named generator, all rounded. The rounded numbers are the problem; the draw is not needed to use it.
 
 use super::draft::{Draft, estimate, filter, mode, rounded_to, unscented, words};
 use super::numbers::rounded_rows;

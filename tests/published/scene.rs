@@ -1,9 +1,8 @@
-//! The scenes that most problems are cut from: generic numbers, one scene a shape.
+//! The scenes from which most problems are made: generic numbers, one scene per shape.
 //!
-//! After this file the reader knows the numbers behind the problems that are not of a paper. Nothing in them is symmetric, equal or zero
-//! by accident: every covariance has all its correlations, every F and H all its entries. The modes' means differ by about a standard
-//! deviation and their covariances by factors of up to three, Q is a part of P that matters, and R is of the size of H P Hᵀ; so no mistake
-//! hides behind a zero or a symmetry.
+//! Nothing in them is symmetric, equal or zero by accident: every covariance has all its correlations, every F and H all its entries. The
+//! modes' means differ by about a standard deviation and their covariances by factors of up to three. Q is a noticeable part of P, and R
+//! has the size of H P Hᵀ. So no mistake hides behind a zero or a symmetry.
 
 use super::draft::{Draft, covariance, estimate, filter, mode, rounded, rows, square};
 use immaculate::oracle::problem::{EstimateFile, ModeFile, Rows};

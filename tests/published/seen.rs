@@ -1,6 +1,6 @@
-//! Mixing and combination once more, in steps that have a measurement.
+//! Mixing and combination again, in steps that have a measurement.
 //!
-//! After this file the reader knows that a filter which needs a detection in every step can be asked for them, too.
+//! They suit filters that need a detection in every step.
 
 use super::draft::Draft;
 use super::equations;

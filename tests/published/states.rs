@@ -1,6 +1,6 @@
-//! Modes with states of their own: constant velocity in the plane beside a turn that has speed, heading and turn rate.
+//! Modes with different states: constant velocity in the plane beside a turn that has speed, heading and turn rate.
 //!
-//! After this file the reader knows the problems in which estimates are converted before they are mixed and combined.
+//! Estimates are converted before they are mixed and combined.
 
 use super::draft::{covariance, rows, square};
 use immaculate::oracle::problem::{FORMAT_2, ProblemFile, Rows};

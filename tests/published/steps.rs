@@ -1,7 +1,7 @@
-//! Whole steps: one generic step for each shape and filter, and several generic steps.
+//! Whole steps: one generic step for each shape and filter, and several generic steps in a row.
 //!
-//! After this file the reader knows the problems in which nothing is trivial and nothing is special. A filter that is right on these is
-//! right, apart from what the other files of this folder are for.
+//! Nothing is trivial and nothing is special. A filter that is right on these is right, apart from what the other files of this folder
+//! test.
 
 use super::draft::{covariance, filter, map, rows, seen, unscented};
 use super::scene::{PLANE_TRACK, RADAR_TRACK, SENSOR, axis, derivatives, plane, radar, scalar};

@@ -1,4 +1,4 @@
-"""Adapters for what many people have; each is short and meant to be copied.
+"""Adapters for widely used libraries; each is short and meant to be copied.
 
     from immaculate.adapters import filterpy, functions, stonesoup
 

@@ -1,4 +1,4 @@
-"""FilterPy: its own classes, as its documentation uses them; nothing is computed here that they compute.
+"""FilterPy: its own classes, used as its documentation shows. The adapter recomputes nothing.
 
 KalmanFilter, ExtendedKalmanFilter, UnscentedKalmanFilter; for several modes IMMEstimator, which has no Jacobians and so no extended ones.
 """
@@ -16,7 +16,7 @@ def estimate(kf: Any, when: str) -> dict[str, Any]:
 
 
 class Filter:
-    """FilterPy's filter for a problem, and what it lets us see."""
+    """FilterPy's filter for a problem, and the values that it exposes."""
 
     def __init__(self, problem: Problem):
         if problem.kind not in ("kalman", "extended", "unscented") or (problem.r > 1 and problem.kind == "extended"):

@@ -1,4 +1,4 @@
-"""One filter that is two functions:
+"""A filter made of two functions:
 
     x, P = predict(x, P, f, F, Q)        f(x) -> (n,) and F(x) -> (n, n), its Jacobian; Q is (n, n)
     x, P = update(x, P, z, h, H, R)      h(x) -> (m,) and H(x) -> (m, n), its Jacobian; R is (m, m)
@@ -16,7 +16,7 @@ Estimate = tuple[Array, Array]
 
 
 def filter_of(predict: Callable[..., Estimate], update: Callable[..., Estimate]) -> Callable[[Problem], "Functions"]:
-    """What `immaculate.check` is given: the two functions as a filter."""
+    """The two functions as a filter for `immaculate.check`."""
 
     def make(problem: Problem) -> "Functions":
         return Functions(problem, predict, update)
@@ -26,7 +26,7 @@ def filter_of(predict: Callable[..., Estimate], update: Callable[..., Estimate])
 
 
 class Functions:
-    """A filter with `predict()` and `update(z)`, of two functions. Steps may differ."""
+    """A filter with `predict()` and `update(z)` from two functions. Steps may differ."""
 
     def __init__(self, problem: Problem, predict: Callable[..., Estimate], update: Callable[..., Estimate]):
         if problem.covariances is None:

@@ -1,4 +1,4 @@
-"""Stone Soup: its predictors and updaters, on models that are the problem's functions; nothing is computed here that they compute.
+"""Stone Soup: its predictors and updaters, on models that are the problem's functions; the adapter recomputes nothing.
 
 Kalman, extended, unscented and third-degree cubature filters, one at a time: Stone Soup has no interacting multiple model filter. It takes the
 mean of angles by vectors: `immaculate.check(stonesoup.Filter, conventions=stonesoup.CONVENTIONS)`.
@@ -49,7 +49,7 @@ def model(base: type, f: Any, jacobian: Any, noise: Any, shape: tuple[int, int],
 
 
 class Filter:
-    """Stone Soup's filter for a problem, and what it lets us see."""
+    """Stone Soup's filter for a problem, and the values that it exposes."""
 
     def __init__(self, problem: Problem):
         if problem.r > 1 or problem.kind not in PARTS:

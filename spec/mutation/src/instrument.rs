@@ -1,13 +1,12 @@
-//! Writes all mutants of a file into it, each behind a question that is answered at run time.
+//! Writes all mutants of a file into it. Each is selected at run time.
 //!
 //! ```text
 //! a + b      becomes   match (a, b) { (l, r) => match site(7, 2) { 0 => l + r, 1 => l - r, _ => l * r } }
 //! fn f { s } becomes   fn f { match site(9, 1) { 1 => return Default::default(), _ => {} } s }
 //! ```
 //!
-//! After this file the reader knows what is done for each kind of mutant. Each alternative has a line of its own with the mutant's id in
-//! a comment, by which the compiler's errors are told apart. A mutant replaces a node of the expression tree; where `cargo mutants`
-//! replaces the text of an operator, the precedence of the new one can give another expression.
+//! Each alternative has its own line, with the mutant's id in a comment that identifies the compiler's errors. A mutant replaces a node of
+//! the expression tree. `cargo mutants` replaces the text of an operator, where the new operator's precedence can give another expression.
 
 use crate::mutant::{Build, Listed, Mutant, Place};
 use proc_macro2::Span;

@@ -1,6 +1,4 @@
-//! The mutants as `cargo mutants --list --json` names them, and what became of each.
-//!
-//! After this file the reader knows what a mutant is, in which states it can be, and in which room it lives.
+//! The mutants as `cargo mutants --list --json` names them, with their states and rooms.
 
 use serde::{Deserialize, Serialize};
 use std::path::Path;

@@ -1,7 +1,7 @@
 //! Runs the mutants of a room against the tests that reach them, until one fails.
 //!
-//! After this file the reader knows in which order: mutants in steps through the room, so that a run that is cut short is a systematic
-//! sample; tests by the mutants of the same file that they have caught for each second, so that the likeliest comes first.
+//! The order: mutants in steps through the room, so that an interrupted run is a systematic sample; tests by the number of mutants of the
+//! same file that they have caught per second, so that the likeliest comes first.
 
 use crate::mutant::{self, Build, Mutant};
 use crate::trace::{self, End, Test, Traced};
@@ -38,7 +38,7 @@ pub struct Verdict {
 
 const STEP: usize = 16;
 
-/// Runs the mutants of a room that have no verdict yet, or one that is open, with so many seconds of tests for each.
+/// Runs the mutants of a room that have no verdict yet, or one that is open, with a number of seconds of tests for each.
 pub fn run(work: &Path, room: &str, seconds: f64) -> Result<(), String> {
     let mutants: Vec<Mutant> = crate::read_json(&work.join("mutants.json"))?;
     let Traced { tests, too_slow, .. } = crate::read_json(&work.join("tests.json"))?;

@@ -46,7 +46,7 @@ pub fn title(file: &str, name: &str) -> String {
     format!("{file}::{name}")
 }
 
-/// Writes `tests.json`: what it does not have yet of these files of tests, or of all, each test with so many seconds.
+/// Writes `tests.json`: what it does not have yet of these files of tests, or of all, each test within a time limit.
 pub fn trace(work: &Path, seconds: f64, files: &[&str]) -> Result<(), String> {
     let tree = work.join("tree");
     let mut traced: Traced = crate::read_json(&work.join("tests.json")).unwrap_or_default();

@@ -1,6 +1,4 @@
-//! What is wrong with the text of a formula, and where.
-//!
-//! After this file the reader knows every reason for which a formula is refused.
+//! The errors in the text of a formula, each with its place.
 
 use super::name::{InvalidName, LARGEST_STUMPFF};
 use super::reader::{DEEPEST, LARGEST_EXPONENT, LONGEST_TEXT, MOST_OPERATIONS};

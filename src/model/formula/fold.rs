@@ -1,6 +1,6 @@
-//! Which operations are constant, and their exact values.
+//! The constant operations of a formula, and their exact values.
 //!
-//! After this file the reader knows when a division is refused because it can have no answer.
+//! A division is refused if it is known to have no result.
 //!
 //! What depends on no name, on no value of π and on no function at an argument where it is irrational is a rational number, and is
 //! computed exactly. A constant whose numerator and denominator have more than a few thousand bits is not followed further.

@@ -1,6 +1,6 @@
-//! Formulas as data: functions of named numbers, read from text and run in every number system.
+//! Formulas as data: functions of named numbers, read from text and evaluated in every number system.
 //!
-//! After this folder the reader knows what a formula may say, and why one that was read has an answer in bounded time.
+//! Every accepted formula can be evaluated in bounded time.
 //!
 //! | file     | what is in it                                                          |
 //! |----------|------------------------------------------------------------------------|
@@ -77,7 +77,7 @@ struct Entry {
 
 /// Formulas of named numbers.
 ///
-/// Example: range and bearing from a sensor at (1, 2), their values and their slopes by x and y.
+/// Example: range and bearing from a sensor at (1, 2), their values and their derivatives by x and y.
 ///
 /// ```
 /// use immaculate::model::formula::Formulas;
@@ -182,9 +182,9 @@ impl Formulas {
         (!has_calls).then(|| self.evaluate(values, |_, _| T::undecided()))
     }
 
-    /// The slopes of the formulas by the first so many names: a row a formula, a column a name.
+    /// The derivatives of the formulas with respect to the first `count` names: one row per formula, one column per name.
     ///
-    /// Source: each column is the slope of the formulas in [`Dual`] numbers of which one name changes.
+    /// Source: each column is the derivative of the formulas in [`Dual`] numbers, in which one name varies.
     ///
     /// Example: the area of a rectangle, and a third number that is held.
     ///
@@ -215,7 +215,7 @@ impl Formulas {
         rows
     }
 
-    /// Whether every formula is a sum of the first so many names, each times a factor without them, and of a term without them.
+    /// Whether every formula is linear in the first names: a sum of them, each times a factor without them, and of a term without them.
     ///
     /// It is decided from the operations alone: `x*x/x` is not seen to be linear.
     ///
@@ -233,7 +233,7 @@ impl Formulas {
         self.results.iter().all(|entry| degrees[entry.result] <= 1)
     }
 
-    /// The degree of every operation in the first so many names: 0, 1, or 2 for everything that is no polynomial of degree one.
+    /// The degree of every operation in the first names: 0, 1, or 2 for everything that is not a polynomial of degree one.
     fn degrees(&self, by: usize) -> Vec<u8> {
         let mut degrees: Vec<u8> = Vec::with_capacity(self.operations.len());
         for operation in &self.operations {

@@ -1,6 +1,4 @@
-//! Names: what a component, parameter or definition may be called, and which functions a formula knows.
-//!
-//! After this file the reader knows which names are taken, and what each function computes.
+//! Names: the valid names of components, parameters and definitions, and the functions of formulas.
 
 use crate::number::Real;
 use std::collections::BTreeSet;
@@ -130,7 +128,7 @@ pub enum InvalidName {
     Twice(String),
 }
 
-/// Checks that names can be told from each other and from everything that formulas know.
+/// Checks that names differ from each other and from everything that formulas define.
 ///
 /// Example: a component cannot be called as a function is.
 ///
@@ -172,7 +170,7 @@ pub(super) fn is_name_part(c: char) -> bool {
     c.is_ascii_alphanumeric() || c == '_'
 }
 
-/// A text of at most so many characters that it can be quoted, on one line.
+/// A text short enough to be quoted, on one line.
 pub(super) fn shortened(text: &str) -> String {
     let mut quoted: String = text.chars().take(LONGEST_NAME).collect();
     if quoted.len() < text.len() {

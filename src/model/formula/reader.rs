@@ -1,6 +1,4 @@
-//! From text to operations, by recursive descent with a bounded depth.
-//!
-//! After this file the reader knows the grammar of formulas.
+//! The grammar of formulas: from text to operations, by recursive descent of bounded depth.
 //!
 //! ```text
 //! sum     = product { (+ | -) product }

@@ -1,6 +1,4 @@
-//! Formulas as text again.
-//!
-//! After this file the reader knows that what is printed is read as the same operations.
+//! Formulas as text again: the printed text reads as the same operations.
 
 use super::{Entry, Formulas, Operation};
 use std::fmt;

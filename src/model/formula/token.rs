@@ -1,6 +1,6 @@
-//! Words, numbers and signs of a formula's text, each with its place.
+//! The tokens of a formula: words, numbers and signs, each with its place.
 //!
-//! After this file the reader knows which characters a formula may have, and what is said of the others.
+//! Any other character is refused.
 
 use super::error::Fault;
 use super::name::{is_name_part, printable};

@@ -1,6 +1,6 @@
-//! Balls, and their + − × ÷ √ with every rounding accounted for.
+//! Balls, and + − × ÷ √ on them with every rounding accounted for.
 //!
-//! After this file the reader knows why the true result of an operation is always inside the computed ball.
+//! The true result of an operation always lies inside the computed ball.
 //!
 //! A ball is a midpoint x and a radius r and stands for every number from x − r to x + r. Each operation computes the midpoint with
 //! exact integers and rounds it once; how far that can be off is added to the radius. Besides, the radius takes the bound of how far

@@ -1,6 +1,6 @@
-//! Upper bounds: the radius of a ball, and everything that is added to it.
+//! Upper bounds: the radius of a ball, and every term that is added to it.
 //!
-//! After this file the reader knows why a radius is never too small, however often it is rounded.
+//! Every rounding goes upwards, so a radius is never too small.
 //!
 //! A bound is a number m · 2ᵉ ≥ 0 with a mantissa of 30 bits, and every operation on it rounds upward: thirty bits are enough for the
 //! size of an error, and integers of the machine are fast. It never becomes zero by rounding: a bound too small for its exponent is

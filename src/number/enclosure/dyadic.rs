@@ -1,7 +1,6 @@
 //! Dyadic numbers: exact integers times powers of two, the midpoints and ends of balls.
 //!
-//! After this file the reader knows how such numbers are compared and turned into doubles and decimals exactly, and why an exponent of
-//! 2⁵⁰ does not ask for 2⁵⁰ bits.
+//! They are compared and converted to doubles and decimals exactly. An exponent of 2⁵⁰ does not need 2⁵⁰ bits.
 
 use super::bound::{Bound, TOP_OF_ZERO};
 use crate::number::Rational;

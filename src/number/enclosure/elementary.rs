@@ -1,6 +1,6 @@
-//! The elementary functions on balls: the value at the midpoint, and how far it moves within the radius.
+//! The elementary functions on balls: the value at the midpoint, and its greatest change within the radius.
 //!
-//! After this file the reader knows how an argument is reduced, and that every step of it is in the radius.
+//! Every step of the argument reduction is accounted for in the radius.
 //!
 //! Each function is evaluated at the midpoint by the series of `series`, in fixed point with enough bits after the point that the
 //! result has the precision asked for; the radius of the argument adds a bound of how far the function moves. Where an argument is so

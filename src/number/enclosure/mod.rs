@@ -1,6 +1,6 @@
-//! Enclosures: numbers that are known to lie in an interval, at any precision.
+//! Enclosures: numbers known to lie in an interval, at any precision.
 //!
-//! After this folder the reader knows what an evaluation on enclosures proves, and on what the proof rests.
+//! An evaluation on enclosures proves that the true result lies in the computed interval.
 //!
 //! An [`Enclosure`] is a ball, all numbers from x − r to x + r. Every operation gives a ball that contains every result of the operation on
 //! numbers of its operands. So an equation that is evaluated on enclosures gives an interval that contains the exact result of the

@@ -1,6 +1,6 @@
-//! What can be read off an enclosure: its ends, the double and the decimal it determines, its size and width.
+//! Reading an enclosure: its ends, the double and the decimal that it determines, its size and width.
 //!
-//! After this file the reader knows when an enclosure determines a double or a digit, and when it says that it does not.
+//! An enclosure that is too wide to determine a double or a digit says so.
 
 use super::dyadic::Dyadic;
 use super::{Ball, Enclosure, Field, Rational};

@@ -1,6 +1,6 @@
-//! The elementary functions on integers: series whose remainders and roundings are counted.
+//! The elementary functions on integers: series with counted remainders and roundings.
 //!
-//! After this file the reader knows how many units the result of each series can be off, and why.
+//! Each series states by how many units its result can be off, and why.
 //!
 //! A number x is kept as the integer X = ⌊x · 2ʷ⌋ or one beside it, and 2⁻ʷ is called a *unit*. What cuts a product short, a shift to the
 //! right, takes away less than a unit. Every function gives its integer with a number of units, [`Fixed`], which the truth is

@@ -1,6 +1,6 @@
 //! The Stumpff functions on balls: their series near zero, circular and hyperbolic functions elsewhere.
 //!
-//! After this file the reader knows why c_k of a ball around zero is as narrow as the ball itself.
+//! For a ball around zero, c_k is as narrow as the ball itself.
 //!
 //! ```text
 //! c_k(t) = Σⱼ (−t)ʲ/(2j + k)!,      c_k = (1/(k−2)! − c₍k−2₎)/t,      c_k′ = ½(k c₍k+2₎ − c₍k+1₎)

@@ -1,7 +1,7 @@
-//! The formulas that are one edit away from a right one.
+//! The formulas one edit away from a right one.
 //!
-//! After this file the reader knows what programs are found to have done: an operand taken for another, a term left out or added, a sign,
-//! an order, a transpose, an inverse forgotten, entry by entry for a product, part of a matrix alone, a factor, a floor.
+//! The edits are the mistakes that programs make: a wrong operand, a term left out or added, a sign, an order, a transpose, a forgotten
+//! inverse, an entry-by-entry product, part of a matrix, a factor, a floor.
 
 use super::instance::Instance;
 use super::right::definitions;
@@ -352,7 +352,7 @@ fn twice(tree: &Tree) -> Vec<Leaf> {
     found
 }
 
-/// Another operand in the place of one.
+/// Replaces one operand by another.
 fn exchanged(
     part: &Tree,
     is_whole: bool,

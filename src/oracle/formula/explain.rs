@@ -1,7 +1,7 @@
-//! A faulty number explained: its equation with the program's own numbers in it, term by term.
+//! The explanation of a faulty number: its equation with the program's own numbers in it, term by term.
 //!
-//! After this file the reader knows how `6` is told from `0.6·(4 + 0.5²) + 0.4·(9 + 0.75²) = 6.375`: sums are written out, products of two
-//! values too, and what stands deeper is one number. Where the difference is one of the terms, that term is named.
+//! For example, `6` is compared with `0.6·(4 + 0.5²) + 0.4·(9 + 0.75²) = 6.375`. Sums and products of two values are written out; anything
+//! nested deeper is one number. If the difference equals one of the terms, that term is named.
 
 use super::instance::Instance;
 use super::right::right;

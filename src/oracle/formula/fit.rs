@@ -1,7 +1,6 @@
-//! The number of a formula that has one: a factor, an added multiple of I, a floor.
+//! The fitted number of a formula: a factor, an added multiple of I, a floor.
 //!
-//! After this file the reader knows how it is fitted: by least squares in units of noise, and taken for the short number that people write
-//! where it is one.
+//! It is fitted by least squares in units of noise, and replaced by the short number that people write if there is one.
 
 use super::edit::{Candidate, Start};
 use super::instance::Instance;
@@ -58,5 +57,5 @@ fn plain(number: f64) -> f64 {
     }
 }
 
-/// So many steps of Newton: a number enters a formula linearly, or nearly so.
+/// The number of Newton steps: a number enters a formula linearly, or nearly so.
 const ITERATIONS: usize = 8;

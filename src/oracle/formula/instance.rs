@@ -1,7 +1,7 @@
-//! One value of a program among all that it showed beside it: what a formula is evaluated on.
+//! One value of a program with everything that it showed beside it: the data on which a formula is evaluated.
 //!
-//! After this file the reader knows where a leaf of a formula gets its numbers: from the program's own values, where it shows them, and
-//! from the right equations on these where it does not.
+//! A leaf of a formula takes its numbers from the program's own values. If a value is not shown, the right equations compute it from the
+//! others.
 
 use super::right::{Drawing, definition};
 use super::tree::{Given, Leaf, Of, Tree, Value};

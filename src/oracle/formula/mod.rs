@@ -1,8 +1,7 @@
-//! The formula that a program computed, where it is not the right one and has no name in the catalogue.
+//! The formula that a program computed, if it is wrong and not in the catalogue.
 //!
-//! After this folder the reader knows how a mistake that nobody has listed is found. Of each value the right formula is a small tree, in
-//! the forms in which programs write it. Trees one edit away are evaluated on the program's own values; the one that gives what is shown,
-//! to rounding and wherever the right one does not, is what was computed.
+//! The right formula of each value is a small tree, in the forms that programs use. Trees one edit away are evaluated on the program's own
+//! values. A tree was computed by the program if it gives the shown values, to rounding, wherever the right one does not.
 //!
 //! ```text
 //! right ─▶ edit ─▶ candidates ─┬─ evaluated at the faulty values ─▶ the few that give them ─▶ at all values ─▶ the nearest

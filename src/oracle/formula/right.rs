@@ -1,7 +1,7 @@
-//! The right formula of each value as a tree, in every form in which programs compute it.
+//! The right formula of each value as a tree, in every form that programs use.
 //!
-//! After this file the reader knows from where the search for another formula starts. The equations themselves are in `filter` and `imm`; a
-//! law holds each tree here equal to them.
+//! The search for a wrong formula starts here. The equations themselves are in `filter` and `imm`; a test checks that each tree equals
+//! them.
 
 use super::instance::Instance;
 use super::tree::{Definition, Given, Leaf, Of, Operation, Tree, Value};

@@ -1,8 +1,7 @@
-//! Which of the formulas near the right one gives what a program shows.
+//! The search for a formula that gives the values a program shows.
 //!
-//! After this file the reader knows when a formula is believed: it gives every number of the shown values to rounding, at faulty values
-//! where the right formula does not. What also gives the values at which the right one holds is better than what does so at some only, and
-//! what is nearer to the right formula is better than what is far.
+//! A formula is accepted if it gives every shown number, to rounding, at faulty values where the right formula does not. It is better if
+//! it also gives the values at which the right formula holds, and if it is closer to the right formula.
 
 use super::edit::{Candidate, Names, candidates};
 use super::fit::fitted;
@@ -33,7 +32,7 @@ pub struct ComputedFormula {
     pub computed: String,
     /// The right one.
     pub right: String,
-    /// At so many of the faulty values it gives what is shown.
+    /// The number of faulty values at which it gives the shown value.
     pub explains: usize,
     /// The number of faulty values.
     pub of: usize,
@@ -50,16 +49,16 @@ pub struct ComputedFormulas {
     pub is_complete: bool,
 }
 
-/// So many faulty values are tried first: what fails at one of them is dropped.
+/// This many faulty values are tried first; a formula that fails at one of them is dropped.
 const PROBES: usize = 4;
 
-/// So many values of each, faulty and right, are looked at: in a long run one step says what the next one says.
+/// At most this many values, faulty and right, are examined: in a long run, one step says the same as the next.
 const VALUES: usize = 40;
 
-/// A fitted number must give at least so many shown ones: one or two can be had by any.
+/// A fitted number must reproduce at least this many shown numbers: any formula can be fitted to one or two.
 const NUMBERS_OF_A_FIT: usize = 3;
 
-/// So many runs with random rounding tell how far a candidate may be off.
+/// The number of randomly rounded runs that show how far a candidate may be off.
 const CANDIDATE_RUNS: u64 = 4;
 
 /// Finds the formulas of the faulty quantities.
@@ -312,7 +311,7 @@ impl Group<'_> {
     }
 }
 
-/// At most so many, evenly from the first to the last.
+/// At most a given number, evenly from the first to the last.
 fn thinned<'b, 'a: 'b>(all: impl Iterator<Item = &'b Instance<'a>>, most: usize) -> Vec<&'b Instance<'a>> {
     let all: Vec<&Instance> = all.collect();
     if all.len() <= most {

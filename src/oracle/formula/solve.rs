@@ -1,8 +1,7 @@
-//! The input that would explain what is shown: a noise, say, that a program made otherwise than it was told.
+//! The input that would explain the shown values, such as a noise that the program computed differently.
 //!
-//! After this file the reader knows when an input is solved for. It must stand alone as a term of the right formula; then what is left of
-//! the shown value without it is the input that was used. It is believed where it is the same at all faulty values of a mode, and there
-//! are several.
+//! The input must stand alone as a term of the right formula; subtracting the rest from the shown value then gives the input that was
+//! used. It is accepted if it is the same at all faulty values of a mode, and there are several.
 
 use super::instance::Instance;
 use super::right::right;
@@ -11,7 +10,7 @@ use super::tree::{Given, Leaf, Of, Operation, Tree, Value};
 use super::value::{With, by_rows};
 use crate::oracle::judge::LIMIT;
 
-/// So many values of a mode must say the same: one alone is explained by any input.
+/// At least this many values of a mode must agree: some input explains any single value.
 const AGREEING: usize = 3;
 
 /// The inputs that stand as terms of their own in some right formula.

@@ -1,7 +1,6 @@
 //! A formula as a tree: operations on the values of a step.
 //!
-//! After this file the reader knows what a formula is made of, and how two are written as one sum or product:
-//! `predicted.covariance − gain · innovation_covariance · gainᵀ`.
+//! Two formulas combine into one sum or product: `predicted.covariance − gain · innovation_covariance · gainᵀ`.
 
 use crate::imm::Quantity;
 use std::ops::{Add, Mul, Sub};
@@ -188,7 +187,7 @@ pub(super) enum Operation {
     Measure,
     MotionSlope,
     MeasurementSlope,
-    /// c, of each mode: its state in the state of whoever reads it.
+    /// c, of each mode: its state converted to the reader's state.
     Read,
     ReadSlope,
 }

@@ -1,6 +1,6 @@
-//! What a formula gives on the values of a step: matrices, or lists of them.
+//! The value of a formula on the numbers of a step: a matrix, or a list of matrices.
 //!
-//! After this file the reader knows the operations. What has no answer, a product of the wrong sizes say, is none.
+//! An operation that has no result, such as a product of the wrong sizes, gives none.
 
 use super::instance::Instance;
 use super::tree::{Definition, Operation, Tree};

@@ -1,13 +1,13 @@
-//! Problems around a given one: other numbers in the same shapes and formulas, other measurements, fewer steps.
+//! Variations of a given problem: other numbers in the same shapes and formulas, other measurements, fewer steps.
 //!
-//! After this file the reader knows what is changed and what is kept: a zero stays zero, a covariance of any rank keeps its rank.
+//! A zero stays zero, and a covariance of any rank keeps its rank.
 
 use super::draw::{Draw, rounded, rounded_to_spread};
 use super::event::see;
 use super::place::{Place, places};
 use crate::oracle::problem::{ProblemFile, Rows};
 
-/// The most steps of a changed problem: so many are certified in a moment.
+/// The most steps of a changed problem, which can be certified in a moment.
 const MOST_STEPS: usize = 8;
 
 /// The problem, changed a little; nothing if it cannot be run.

@@ -1,7 +1,6 @@
 //! Random numbers for problems that people read: short decimals, covariances far from singular.
 //!
-//! After this file the reader knows that a problem depends on its seed and its number alone: each number has a stream of its own of one
-//! named, portable generator.
+//! A problem depends only on its seed and its number: each number has its own stream of one named, portable generator.
 
 use crate::number::Real;
 use crate::oracle::problem::Rows;
@@ -71,7 +70,7 @@ impl Draw {
             .collect()
     }
 
-    /// Probabilities of so many things, of two decimals, none of them zero, that sum to one; the one at `favourite` is the greatest.
+    /// A given number of probabilities with two decimals, none of them zero, that sum to one; the one at `favourite` is the greatest.
     pub(super) fn probabilities(&mut self, count: usize, favourite: usize) -> Vec<f64> {
         // At most 3 · 15 of 100 are given away.
         let mut hundredths: Vec<usize> = (0..count).map(|_| 3 + self.below(13)).collect();
@@ -81,7 +80,7 @@ impl Draw {
     }
 }
 
-/// The double nearest to the decimal with so many significant digits; a zero has no sign.
+/// The double nearest to the decimal with a number of significant digits; a zero has no sign.
 pub(super) fn rounded(value: f64, digits: usize) -> f64 {
     let places = digits.max(1) - 1;
     format!("{value:.places$e}").parse().unwrap_or(value) + 0.0

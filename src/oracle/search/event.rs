@@ -1,7 +1,7 @@
-//! What happens to a filter in a random problem: it sees, misses, is misled, and meets what every filter must bear.
+//! The events of a random problem: detections, misses, outliers, and the situations that every filter must handle.
 //!
-//! After this file the reader knows that measurements are drawn about what the filter itself predicts, step by step, and which behaviours
-//! are put on top of a scene. Each leaves its flag in the problem, so that they can be counted.
+//! Measurements are drawn around the filter's own predictions, step by step. Each situation that is added to a scene leaves its flag in
+//! the problem, so that they can be counted.
 
 use super::draw::{Draw, leading_identity, rounded, rounded_to_spread};
 use super::scene::Offer;
@@ -269,7 +269,7 @@ fn predicted(draw: &mut Draw, problem: &ProblemFile, step: usize) -> Option<(Vec
     let m = *problem.dimensions().m.get(step)?;
     beginning.measurements[step].z = Some(vec![Some(0.0); m]);
     if matches!(beginning.filter, FilterFile::Converted { .. }) {
-        // A converted measurement is none of range and bearing, which points predict.
+        // A converted measurement is not the range and bearing that points predict.
         let rule = "cubature-3".to_owned();
         beginning.filter = FilterFile::Cubature { rule };
     }

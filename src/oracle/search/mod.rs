@@ -1,6 +1,4 @@
-//! The search for a problem on which a program fails, and the smallest such problem.
-//!
-//! After this folder the reader knows how random problems are drawn, what becomes of them, and how one that fails is made small.
+//! The search for a problem on which a program fails, and for the smallest such problem.
 //!
 //! ```text
 //! seed, number ─▶ scene ─▶ event ─▶ certified, fair? ─▶ asked and judged ─▶ failed? ─▶ shrink ─▶ checked with a diagnosis
@@ -86,21 +84,21 @@ pub struct Searched {
     pub ready: Ready,
     /// The seed.
     pub seed: u64,
-    /// So many problems were judged, of each kind of filter.
+    /// The number of judged problems, by kind of filter.
     pub kinds: BTreeMap<String, usize>,
-    /// And so many with each behaviour.
+    /// The number of judged problems with each behaviour.
     pub behaviours: BTreeMap<Behaviour, usize>,
-    /// So many problems were judged.
+    /// The number of judged problems.
     pub problems: usize,
-    /// So many values were judged.
+    /// The number of judged values.
     pub values: usize,
-    /// So many draws were no fair problems: they could not be certified, or are too near to singular.
+    /// The number of draws that were not fair problems: they could not be certified, or are too nearly singular.
     pub dropped: usize,
-    /// So many problems the program passed over.
+    /// The number of problems that the program skipped.
     pub skipped: usize,
-    /// So many were not asked, since the program has passed over the like.
+    /// The number that were not asked because the program had skipped similar ones.
     pub not_asked: usize,
-    /// So many drowned in rounding noise.
+    /// The number that drowned in rounding noise.
     pub cannot_tell: usize,
     /// The conventions and forms, not declared, by which answers were explained; by them the program was judged from then on.
     pub otherwise: Vec<&'static Variant>,
@@ -352,7 +350,7 @@ fn alone(asked: &mut Asked, problem: &ProblemFile) -> Result<Report, NotMade> {
     check_problems(asked.subject, std::slice::from_ref(problem), &|_| {})
 }
 
-/// The variants of a diagnosis, the first of those that cannot be told apart.
+/// The variants of a diagnosis, the first of those that cannot be distinguished.
 fn explaining(diagnosis: &Diagnosis) -> Vec<&'static Variant> {
     match diagnosis {
         Diagnosis::Nothing => vec![],
@@ -374,10 +372,10 @@ struct Known {
     seen: BTreeMap<String, (usize, usize)>,
 }
 
-/// After so many problems with something that were passed over and none that was answered, the program is taken to have none of it.
+/// After this many skipped problems with some feature and no answered one, the program is assumed not to have the feature.
 const PATIENCE: usize = 3;
 
-/// Of what a program is taken not to have, one in so many problems is asked all the same: it was perhaps something else.
+/// One in this many problems with a feature that the program seems to lack is asked anyway: perhaps something else was the reason.
 const RARELY: u64 = 10;
 
 impl Known {

@@ -1,6 +1,6 @@
-//! The numbers of a problem by what they are: what may be done to them depends on that.
+//! The numbers of a problem by their role, which decides how they may be changed.
 //!
-//! After this file the reader knows that a problem is changed, and made simpler, by one walk through the file.
+//! One walk through the file changes and simplifies a problem.
 
 use crate::oracle::models::{ModelParameters, NoiseFile};
 use crate::oracle::problem::{FilterFile, MeasurementAt, MeasurementFile, ModeFile, ProblemFile, Rows};

@@ -1,7 +1,7 @@
-//! What can be left out of a problem: steps, modes, components, and all that is special.
+//! What can be removed from a problem: steps, modes, components, and every special feature.
 //!
-//! After this file the reader knows the larger steps of shrinking. Each gives problems with one thing less; whether the fault is still
-//! there in one of them, or whether it is a problem at all, is found out by asking.
+//! These are the larger steps of shrinking. Each proposes problems with one thing less; asking shows whether they are valid and still have
+//! the fault.
 
 use super::draw::{leading_identity, rounded};
 use crate::model::space::ComponentKind;
@@ -15,7 +15,7 @@ pub(super) fn with(problem: &ProblemFile, change: impl FnOnce(&mut ProblemFile))
     changed
 }
 
-/// Without so many steps in a row: as many as possible first, the last ones first.
+/// Removes a number of steps in a row: as many as possible first, the last ones first.
 pub(super) fn steps(problem: &ProblemFile) -> Vec<ProblemFile> {
     let all = problem.measurements.len();
     let mut fewer = Vec::new();

@@ -1,8 +1,8 @@
-//! Random problems before anything is measured: modes, estimates and a sensor, for a kind of filter.
+//! Random problems without measurements: modes, estimates and a sensor, for a kind of filter.
 //!
-//! After this file the reader knows what a search asks for: one to three modes, one to five steps, states of one to four numbers with dense
-//! F, H and covariances, or range and bearing, or turns and headings by named models. All of it is well conditioned, so that a right filter
-//! has no excuse to stop; what is hard on purpose is put on top of it in `event`.
+//! A search asks for one to three modes, one to five steps, and states of one to four numbers, with dense F, H and covariances, or range
+//! and bearing, or turns and headings by named models. All of it is well conditioned, so that a right filter has no excuse to stop;
+//! `event` adds the situations that are deliberately hard.
 
 use super::draw::{Draw, rounded};
 use crate::model::Conversion;
@@ -42,7 +42,7 @@ fn is_new(kind: &str) -> bool {
 /// What a Kalman filter may have, and not every one has.
 const OF_KALMAN: [&str; 3] = [CORRELATED_NOISE, GPB1, UNMIXED];
 
-/// Where a target moves and what is seen of it.
+/// The motion of a target and its measurement.
 #[derive(Clone, Copy, PartialEq)]
 enum Scene {
     /// Dense matrices.
@@ -71,7 +71,7 @@ impl Scene {
     }
 }
 
-/// So many components a state may have for a kind of filter: a Gauss-Hermite rule of k nodes has kⁿ points, and 81 are enough.
+/// The most components of a state for a kind of filter: a Gauss-Hermite rule of k nodes has kⁿ points, and 81 are enough.
 fn most_components(kind: &str) -> usize {
     match kind {
         "gauss-hermite-5" => 2,

@@ -1,7 +1,7 @@
-//! Shrinking: a problem on which a program fails becomes the smallest on which it fails in the same way.
+//! Shrinking: reduces a problem on which a program fails to the smallest one on which it fails in the same way.
 //!
-//! After this file the reader knows that shrinking ends by itself, since every problem that is tried is smaller than the one before, and
-//! that it ends earlier where its tries or its time are used up.
+//! Every problem that is tried is smaller than the one before, so shrinking ends by itself. It ends earlier if its tries or its time are
+//! used up.
 
 use super::asked::{Asked, Certified, Symptom};
 use super::size::Size;
@@ -22,7 +22,7 @@ pub struct ShrinkingLimits {
 /// How it went.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Shrinking {
-    /// So many problems were asked.
+    /// The number of problems that were asked.
     pub tries: usize,
     /// What was used up before nothing could be left out any more.
     pub cut_short: Option<&'static str>,

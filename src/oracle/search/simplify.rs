@@ -1,7 +1,7 @@
 //! How the numbers of a problem become simpler: identity, zero, one, few digits.
 //!
-//! After this file the reader knows the smaller steps of shrinking: first whole matrices and vectors, then single numbers. No covariance
-//! becomes zero or singular by them: a program may stop there and be right.
+//! These are the smaller steps of shrinking: first whole matrices and vectors, then single numbers. They never make a covariance zero or
+//! singular, because a program may rightly stop there.
 
 use super::draw::{leading_identity, rounded};
 use super::place::{Place, places};

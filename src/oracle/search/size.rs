@@ -1,7 +1,6 @@
-//! How large a problem is: what shrinking makes smaller, so that it ends.
+//! The size of a problem, which shrinking reduces until it ends.
 //!
-//! After this file the reader knows that a step counts for more than any number of modes, a mode for more than any number of components,
-//! and digits for least.
+//! A step counts for more than any number of modes, a mode for more than any number of components, and digits for least.
 
 use crate::model::space::ComponentKind;
 use crate::oracle::models::ComponentFile;

@@ -1,6 +1,6 @@
 //! Variants of range and bearing: the measurement function and the circle.
 //!
-//! After this file the reader knows how a bearing goes wrong by its axes, its sign, its unit and its cut at ±π.
+//! A bearing can go wrong by its axes, its sign, its unit and its cut at ±π.
 
 use super::super::setup::Setup;
 use super::{draws_points, is_linear, weights};

@@ -1,6 +1,6 @@
 //! Variants of the combined estimates, before and after the measurement.
 //!
-//! After this file the reader knows by which probabilities, and of which estimates, an output is wrongly combined.
+//! An output can be combined with the wrong probabilities, or from the wrong estimates.
 
 use super::super::setup::Setup;
 use super::mixing::{squared, with_inner_products, without_spread};

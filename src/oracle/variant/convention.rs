@@ -1,6 +1,6 @@
 //! Conventions: choices that the papers leave open and that change exact values.
 //!
-//! After this file the reader knows each value of `conventions` that a program may declare. None of them is wrong.
+//! A program may declare any of these values of `conventions`; none is wrong.
 
 use super::super::setup::Setup;
 use super::{drawn, draws_points, number, square_root, weights};

@@ -1,7 +1,6 @@
-//! Variants of converted measurements: the position that is measured, and its covariance.
+//! Variants of converted measurements: the converted position and its covariance.
 //!
-//! After this file the reader knows how a conversion goes wrong by its axes, its signs and its noise, and which debiasing is taken for
-//! which.
+//! A conversion can go wrong by its axes, its signs, its noise, or its debiasing.
 
 use super::super::setup::Setup;
 use super::used;

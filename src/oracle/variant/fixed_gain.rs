@@ -1,6 +1,4 @@
-//! Variants of filters with fixed gains: what is given for one mode and used in another, and the two readings of derbez2000's update.
-//!
-//! After this file the reader knows what can be confused where nothing is computed.
+//! Variants of filters with fixed gains: inputs of one mode used in another, and the two readings of derbez2000's update.
 
 use super::super::setup::Setup;
 use crate::filter::fixed_gain::FixedGain;

@@ -1,6 +1,6 @@
-//! Forms: other algebra for the same exact value.
+//! Forms: different algebra for the same exact value.
 //!
-//! After this file the reader knows how else a right filter may be written; what differs is rounding alone.
+//! A right filter may be written in each of these ways; only rounding differs.
 
 use super::super::setup::Setup;
 use super::{

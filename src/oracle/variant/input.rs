@@ -1,6 +1,6 @@
-//! Variants of the problem: numbers that are read in another order, in another unit or not at all.
+//! Variants of the problem: numbers read in another order, in another unit or not at all.
 //!
-//! After this file the reader knows how right equations give wrong values.
+//! Right equations then give wrong values.
 
 use super::super::setup::Setup;
 use super::{diagonal, number};

@@ -1,6 +1,6 @@
 //! Variants of the log-likelihood.
 //!
-//! After this file the reader knows how the Gaussian density of a residual is miscalculated, and of which residual.
+//! The Gaussian density can be miscalculated, or evaluated at the wrong residual.
 
 use super::super::setup::Setup;
 use super::{diagonal, difference, draws_no_points, measurement_matrix, noise, number, seen, used};

@@ -1,7 +1,6 @@
-//! Variants of the extended filter: its Jacobians, and what they are taken for.
+//! Variants of the extended filter's Jacobians.
 //!
-//! After this file the reader knows where a Jacobian is evaluated by mistake, how it is written down wrongly, and that a Jacobian is not
-//! the function.
+//! A Jacobian can be evaluated at the wrong point, written down wrongly, or used in place of the function.
 
 use super::super::setup::Setup;
 use crate::filter::Transform;

@@ -1,6 +1,6 @@
 //! Variants of the predicted measurement, the innovation and their covariances.
 //!
-//! After this file the reader knows how R is lost or counted twice, and which points and means are taken for others.
+//! R can be lost or counted twice, and the wrong points or means can be used.
 
 use super::super::setup::Setup;
 use super::{

@@ -1,6 +1,4 @@
-//! Variants of a step without a detection.
-//!
-//! After this file the reader knows what programs do when there is nothing to update with.
+//! Variants of a step without a detection: what programs do when there is nothing to update with.
 
 use super::super::setup::Setup;
 use crate::gaussian::log_density;

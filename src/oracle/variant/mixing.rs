@@ -1,6 +1,6 @@
-//! Variants of the mixing: the chain, the mixing probabilities and the mixed estimates.
+//! Variants of the mixing: the Markov chain, the mixing probabilities and the mixed estimates.
 //!
-//! After this file the reader knows how the two indices of a Markov chain, and the means about which a spread is taken, go astray.
+//! The two indices of the chain can be exchanged, and the spread can be taken about the wrong mean.
 
 use super::super::chain::ChainOfRates;
 use super::super::setup::Setup;
@@ -94,7 +94,7 @@ fn of_mixing_probability<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
                 })
             }
         }
-        // μⱼ∣ᵢ in the place of μᵢ∣ⱼ
+        // μⱼ∣ᵢ instead of μᵢ∣ⱼ
         "mixing-indices-swapped" => {
             *entry = |problem, previous, _, j| each(problem, |i| mixing(problem, previous, j, i));
         }
@@ -147,7 +147,7 @@ fn of_mixed_estimate<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
                 mixture_covariance(&swapped(problem, previous, j), &read(problem, previous, j), mean)
             };
         }
-        // what was mixed for the modes before j stands in the place of their estimates
+        // the mixed estimates of the modes before j replace their estimates
         "mixing-in-place" => {
             equations.mixed_mean = |problem, previous, now, j| {
                 let estimates = overwritten(problem, previous, now, j);

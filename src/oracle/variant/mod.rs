@@ -1,8 +1,8 @@
-//! The catalogue of variants: the filter with some entries of its table exchanged, or with another problem.
+//! The catalogue of variants: the filter with some entries of its table exchanged, or with a changed problem.
 //!
-//! After this folder the reader knows every mistake, convention and form by which another program's values can be explained. A variant
-//! has two halves: a row of `spec/variants.toml` says in words what it is, and an arm of one of these files makes it. Every arm is a few
-//! lines and generic over the number system, so that a variant can be run wherever the filter can.
+//! It contains every mistake, convention and form that can explain another program's values. A variant has two halves: a row of
+//! `spec/variants.toml` describes it in words, and an arm in one of these files applies it. Every arm is a few lines, generic over the
+//! number system, so that a variant runs wherever the filter does.
 //!
 //! | file            | whose equation is varied                                             |
 //! |-----------------|----------------------------------------------------------------------|
@@ -113,7 +113,7 @@ pub struct Variant {
     pub input: bool,
     /// What was done, said to the one who did it.
     pub about: String,
-    /// What can be seen of it.
+    /// Its symptom.
     pub effect: String,
     /// Where it is found.
     pub source: String,

@@ -1,6 +1,6 @@
 //! Variants of the points and weights of a rule.
 //!
-//! After this file the reader knows what the papers' misprinted weights do to a filter, and how a square root is taken by its rows.
+//! They include the papers' misprinted weights, and roots that are read by rows.
 
 use super::super::setup::Setup;
 use super::{drawn, draws_points};

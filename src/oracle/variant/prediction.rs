@@ -1,6 +1,4 @@
-//! Variants of the prediction: what moves, by which matrix, and with which noise.
-//!
-//! After this file the reader knows the mistakes that can be made in F P Fᵀ + Q.
+//! Variants of the prediction: the mistakes that can be made in F P Fᵀ + Q.
 
 use super::super::setup::Setup;
 use super::{draws_no_points, draws_points, motion_matrix, sum_of_covariance_weights, weights, zero_rows};

@@ -1,6 +1,6 @@
 //! Variants of the mode probabilities.
 //!
-//! After this file the reader knows what stands in the place of the prior, of the likelihood and of the normaliser in Bayes' rule.
+//! Bayes' rule can use the wrong prior, the wrong likelihood or the wrong normaliser.
 
 use super::super::setup::Setup;
 use crate::imm::printed::mode_probability_22;

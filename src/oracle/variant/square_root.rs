@@ -1,6 +1,6 @@
-//! The square roots of a covariance that are not its lower Cholesky factor.
+//! The square roots of a covariance other than its lower Cholesky factor.
 //!
-//! After this file the reader knows the two others in use. All give points with the right mean and covariance, and different points.
+//! Two others are in use. Both give different points with the right mean and covariance.
 
 use crate::matrix::{NotPositiveDefinite, cholesky};
 use crate::number::Real;

@@ -1,6 +1,6 @@
-//! Variants of modes with states of their own: how the others read their estimates.
+//! Variants of modes with different states: how the others read their estimates.
 //!
-//! After this file the reader knows what is forgotten of a conversion: all of it, its Jacobian, or what it adds.
+//! A program can forget the conversion, its Jacobian, or the covariance that it adds.
 
 use super::super::setup::Setup;
 use crate::gaussian::{Gaussian, mixture_covariance, mixture_mean};

@@ -1,6 +1,4 @@
-//! Variants of angles in the state: headings that are averaged as numbers, or by sine and cosine.
-//!
-//! After this file the reader knows which averages have to know of the circle.
+//! Variants of angles in the state: headings averaged as plain numbers, or by sine and cosine.
 
 use super::super::setup::Setup;
 use crate::gaussian::{mixture_covariance, mixture_mean};

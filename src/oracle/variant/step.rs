@@ -1,6 +1,6 @@
-//! Variants of problems whose steps differ: what is taken from the first step for all.
+//! Variants of problems whose steps differ: values of the first step used in all.
 //!
-//! After this file the reader knows how a filter goes wrong that was written for equal steps.
+//! A filter written for equal steps goes wrong in these ways.
 
 use super::super::setup::Setup;
 use crate::imm::Problem;

@@ -1,6 +1,6 @@
 //! Variants of the update: the gain, the updated mean and the updated covariance.
 //!
-//! After this file the reader knows the mistakes that can be made in C S⁻¹, x̂⁻ + W ν and P⁻ − W S Wᵀ.
+//! These are the mistakes that can be made in C S⁻¹, x̂⁻ + W ν and P⁻ − W S Wᵀ.
 
 use super::super::setup::Setup;
 use super::{diagonal, draws_no_points, measurement_matrix, noise};
@@ -151,7 +151,7 @@ fn of_covariance<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     true
 }
 
-/// The Joseph form with so many times the noise: P⁻ − W Cᵀ − C Wᵀ + W (S − R) Wᵀ + times · W R Wᵀ.
+/// The Joseph form with a multiple of the noise: P⁻ − W Cᵀ − C Wᵀ + W (S − R) Wᵀ + times · W R Wᵀ.
 fn joseph<T: Real>(problem: &Problem<T, Dyn, Dyn>, now: &Step<T, Dyn, Dyn>, j: usize, times: &T) -> DMatrix<T> {
     let (w, c) = (&now.gains[j], &now.cross_covariances[j]);
     let noise = noise(problem, now, j) * (times.clone() - T::one());

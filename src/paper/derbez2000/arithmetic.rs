@@ -1,7 +1,6 @@
-//! The claims of derbez2000 that arithmetic decides: on the published figures, and exactly.
+//! The claims of derbez2000 that arithmetic decides, on the published figures and exactly.
 //!
-//! After this file the reader knows which of the paper's statements need no runs, because they contradict the paper's own tables, or
-//! because the equations decide them for all inputs at once.
+//! These statements need no runs: they contradict the paper's own tables, or the equations decide them for all inputs at once.
 
 use super::{OPERATIONS_OF_SECTION_4, OPERATIONS_OF_SECTION_4_1};
 use crate::imm::probability::{mixing_probability, predicted_mode_probability};

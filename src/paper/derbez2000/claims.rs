@@ -1,8 +1,7 @@
 //! The claims of derbez2000, each with its judge.
 //!
-//! After this file the reader knows what the paper's comparison can and cannot mean. The claims are in `spec/derbez2000/claims.toml`, in
-//! the same order; every judge computes its evidence and is called once in [`judge`]. Those that need no runs are in
-//! [`arithmetic`].
+//! The claims are in `spec/derbez2000/claims.toml`, in the same order. Every judge computes its evidence and is called once in [`judge`].
+//! The judges that need no runs are in [`arithmetic`].
 
 use super::arithmetic::published;
 use super::contestants::{CA, CoordinateFilters, Coordinates, FIXED_GAIN, IMM, Reading};

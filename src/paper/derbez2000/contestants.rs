@@ -1,7 +1,6 @@
 //! The three filters of the comparison, for either coordinate.
 //!
-//! After this file the reader knows each of them by what it is made of: the two motions, their noises, a chain, and for the third the
-//! steady gains of both.
+//! Each filter consists of the two motions, their noises and a Markov chain; the third also has the steady gains of both.
 //!
 //! ```text
 //! IMM          constant velocity and constant acceleration, Kalman filters

@@ -1,7 +1,7 @@
-//! Small filters that decide what derbez2000 says of stability and boundedness.
+//! Small filters that decide derbez2000's statements on stability and boundedness.
 //!
-//! After this file the reader knows the instances behind the verdicts: filters that meet a statement's hypotheses and not its conclusion,
-//! in numbers small enough to follow by hand, and what does hold in their place.
+//! Each instance meets a statement's hypotheses but not its conclusion, in numbers small enough to follow by hand. What does hold instead
+//! is here too.
 //!
 //! What holds in place of the theorem on bounded mixed covariances: *let all filters share a measurement matrix H of full column rank,
 //! all Qⱼ and R be positive definite, and noise and mismatch dⱼ = Fⱼx̄ₙ − x̄ₙ₊₁ be bounded for every model j. Then all P⁰ʲ are bounded,

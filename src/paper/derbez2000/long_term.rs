@@ -1,7 +1,7 @@
 //! The claims of derbez2000 on the long-term error and on the cost.
 //!
-//! After this file the reader knows what the paper's algorithm predicts beside what a simulation shows, under each form of its steps,
-//! and how many operations the filters' equations take.
+//! They compare the algorithm's predictions with a simulation, under each form of its steps, and count the operations of the filters'
+//! equations.
 
 use super::{ACCELERATION, INTERVAL};
 use crate::model::acceleration::{acceleration_response, embedded_constant_velocity, position_matrix};

@@ -1,7 +1,7 @@
 //! Derbez, Rémillard and Jouan 2000: an IMM filter of constant velocity and constant acceleration whose gains are fixed.
 //!
-//! After this folder the reader knows where each equation of the paper is in the code, its simulations with everything that they leave
-//! open, and what becomes of its claims ([`claims`]).
+//! A guide from each equation of the paper to the code, its simulations with every open choice, and the verdicts on its claims
+//! ([`claims`]).
 //!
 //! The paper in its own order, section by section:
 //!

@@ -1,7 +1,7 @@
-//! Where the target goes: the true states of scenarios 1 and 2.
+//! The path of the target: the true states of scenarios 1 and 2.
 //!
-//! After this file the reader knows both paths, coordinate by coordinate, and what the paper does not say about them. The truth has no
-//! noise and is the same in every run.
+//! Both paths are given coordinate by coordinate, with the points that the paper leaves open. The truth has no noise and is the same in
+//! every run.
 
 use crate::model::acceleration::constant_acceleration;
 use crate::model::motion::coordinated_turn;

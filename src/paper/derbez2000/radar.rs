@@ -1,7 +1,7 @@
-//! What the radar sees: range and bearing, turned into positions, and how uncertain these are.
+//! The radar: range and bearing, turned into positions, and the uncertainty of these.
 //!
-//! After this file the reader knows the one measurement of the paper, and the variances that its transformation gives the filters of x
-//! and of y. How a position is made of range and bearing, and how the bias is taken out, is [`crate::model::conversion`].
+//! The paper has one measurement, and its transformation gives the filters the variances of x and y. [`crate::model::conversion`] makes a
+//! position of range and bearing and removes the bias.
 
 use crate::model::Conversion;
 use crate::number::Real;

@@ -1,7 +1,7 @@
-//! Errors of one filter as a part of another's, under everything that the paper leaves open.
+//! Errors of one filter relative to another's, under every open choice of the paper.
 //!
-//! After this file the reader knows how a claim about filters is judged whose configuration was not published: in each configuration it is
-//! certainly true, certainly false, or neither, and the verdict says whether what was left open decides.
+//! This judges a claim about filters whose configuration was not published. In each configuration the claim is certainly true, certainly
+//! false, or neither; the verdict says whether the open choices decide it.
 
 use super::path::Regime;
 use super::scenario::CoordinateScenario;

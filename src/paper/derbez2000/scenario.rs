@@ -1,8 +1,7 @@
 //! A scenario of derbez2000 with every choice made, and a run of it.
 //!
-//! After this file the reader knows what is unlike the other papers: each coordinate has a filter of its own, with mode probabilities of
-//! its own, and the two know nothing of each other. What a run keeps of them is in the form of the other papers, errors of
-//! [x, ẋ, y, ẏ], so that the same statistics apply; the error of the acceleration is left out.
+//! Unlike in the other papers, each coordinate has its own filter with its own mode probabilities, and the two are independent. A run
+//! keeps the errors of [x, ẋ, y, ẏ], as in the other papers, so that the same statistics apply; the error of the acceleration is omitted.
 
 use super::contestants::{CoordinateFilters, CoordinateSetup, Coordinates};
 use super::path::{PlaneState, Regime, TruePath, position_of};

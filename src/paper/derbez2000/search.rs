@@ -1,8 +1,8 @@
-//! Does anything that scenario 2 leaves open give the errors of table 1?
+//! Can the open choices of scenario 2 give the errors of table 1?
 //!
-//! After this file the reader knows how the answer is looked for: configurations drawn over decades, each run a few times, then a descent
-//! from the best of them in small random changes, and the nearest of all run in full. Ten numbers and choices are free and six figures
-//! are to be met, so that a near miss would say little for the configuration; a distant one says that the table is not of this scenario.
+//! The search draws configurations over decades and runs each a few times. It then descends from the best ones in small random changes and
+//! runs the nearest of all in full. Ten numbers and choices are free, and six figures are to be met. So a near miss would say little for
+//! the configuration; a distant one says that the table does not come from this scenario.
 
 use super::arithmetic::published;
 use super::contestants::{CA, CoordinateSetup, FIXED_GAIN, IMM, MeasurementNoise, Reading};

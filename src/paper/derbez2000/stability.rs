@@ -1,7 +1,7 @@
 //! The claims of derbez2000 on stability and boundedness, decided by proofs and instances.
 //!
-//! After this file the reader knows which of the paper's statements are proven, which are refuted, and under which hypotheses each of the
-//! latter becomes true. What is computed here is exact or enclosed; where something was only searched, the evidence says so.
+//! It shows which statements of the paper are proven, which are refuted, and under which hypotheses each refuted one becomes true.
+//! Everything computed here is exact or enclosed; where something was only searched for, the evidence says so.
 
 use super::instances::{
     copies_apart, distances_of_two_copies, gain_after_a_jump, growing_filter, growing_mixture, is_locally_unstable,

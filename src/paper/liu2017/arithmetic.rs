@@ -1,6 +1,6 @@
-//! The claims of liu2017 that arithmetic decides: on the published figures, and exactly.
+//! The claims of liu2017 that arithmetic decides, on the published figures and exactly.
 //!
-//! After this file the reader knows what the paper's numbers of points and its times say, and of which degree its rule is.
+//! They concern the paper's numbers of points, its times, and the degree of its rule.
 
 use crate::number::Rational;
 use crate::paper::specification::Specification;

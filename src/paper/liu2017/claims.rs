@@ -1,8 +1,7 @@
 //! The claims of liu2017, each with its judge.
 //!
-//! After this file the reader knows by how much the four filters of the paper differ, and what could have made its table. The claims are
-//! in `spec/liu2017/claims.toml`, in the same order; every judge computes its evidence and is called once in [`judge`]. Those that need no
-//! runs are in [`arithmetic`].
+//! The claims are in `spec/liu2017/claims.toml`, in the same order. Every judge computes its evidence and is called once in [`judge`]. The
+//! judges that need no runs are in [`arithmetic`].
 
 use super::{BEARING_DEVIATION, arithmetic, quantity_of_row, scenario};
 use crate::filter::Filter;

@@ -1,8 +1,7 @@
 //! The filters of the comparison.
 //!
-//! After this file the reader knows both filters by what they are made of: the same two motions, the same chain and the same noises; one
-//! converts range and bearing and is linear from there on, the other sends points through range and bearing. And from what both start:
-//! the first measurement, as a position.
+//! Both filters have the same two motions, the same Markov chain and the same noises. One converts range and bearing and is linear from
+//! then on; the other passes points through range and bearing. Both start from the first measurement, as a position.
 //!
 //! ```text
 //! IMM-CMKF   Kalman filters of converted measurements; there is no bearing in them that could be wrapped

@@ -1,9 +1,8 @@
-//! What makes the unscented filter diverge.
+//! The cause of the unscented filter's divergence.
 //!
-//! After this file the reader knows how the question is put: the same trajectories and the same measurements are filtered by the
-//! converted filter, by the unscented one with bearings on the circle, and by the unscented one with bearings as plain numbers. If the
-//! mismatch of the noises were the cause, all unscented filters would diverge; if the cut of the bearings at ±π is, only the last does, in
-//! runs whose measured bearing jumps.
+//! Three filters see the same trajectories and the same measurements: the converted filter, the unscented one with bearings on the circle,
+//! and the unscented one with bearings as plain numbers. If mismatched noises were the cause, both unscented filters would diverge. If the
+//! cut of the bearings at ±π is the cause, only the last one does, in runs whose measured bearing jumps.
 
 use super::scenario;
 use super::sweep::{SweepPoint, point};

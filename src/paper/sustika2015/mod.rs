@@ -1,7 +1,7 @@
 //! Sustika and Suryana 2015: IMM filters of a coastal radar, with converted measurements or with unscented points.
 //!
-//! After this folder the reader knows where each equation of the paper is in the code, its simulations with everything that they leave
-//! open, and what becomes of its claims ([`claims`]).
+//! A guide from each equation of the paper to the code, its simulations with every open choice, and the verdicts on its claims
+//! ([`claims`]).
 //!
 //! The paper in its own order, section by section. Its formulas are lost in the available copy and are put together again from what is
 //! left:

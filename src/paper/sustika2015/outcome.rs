@@ -1,7 +1,7 @@
-//! What one run shows of the two filters, and of the unscented one with bearings that are never wrapped.
+//! The outcome of one run for the two filters, and for the unscented one with bearings that are never wrapped.
 //!
-//! After this file the reader knows what is kept of a run, of which there are many: few numbers, from which every question about percentage
-//! fit errors and about divergence can be answered. All three filters see the same truth and the same measurements.
+//! There are many runs, so each keeps only a few numbers. These answer every question about percentage fit errors and divergence. All
+//! three filters see the same truth and the same measurements.
 
 use super::contestants::Bearings;
 use super::scenario::RadarScenario;

@@ -1,7 +1,7 @@
 //! The claims of sustika2015 that need no simulation: exact laws, the arithmetic of table 6, and operations.
 //!
-//! After this file the reader knows what the paper's arguments for its two filters are worth: how hard a Jacobian is, why range and
-//! bearing are not linear, what sigma points keep, where IMM-CMKF linearises after all, and what a cycle of either filter costs.
+//! They test the paper's arguments for its two filters: how hard a Jacobian is, why range and bearing are not linear, what sigma points
+//! preserve, where IMM-CMKF linearises after all, and the cost of one cycle of either filter.
 
 use crate::filter::cubature;
 use crate::model::conversion::{Conversion, converted_covariance, converted_position, in_the_plane};

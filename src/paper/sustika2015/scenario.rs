@@ -1,8 +1,8 @@
 //! A simulation of sustika2015 with every choice made, and a run of it.
 //!
-//! After this file the reader knows how the filters begin, what is kept of a run, and how the run's percentage fit error is formed: over
-//! all steps that were filtered, from the errors of x and y and the true places. Errors are kept in the form of the other papers,
-//! [x, ẋ, y, ẏ], so that the same statistics apply; those of the accelerations are left out.
+//! It defines how the filters begin, what is kept of a run, and the run's percentage fit error: over all filtered steps, from the errors
+//! of x and y and the true positions. Errors are kept as [x, ẋ, y, ẏ], as in the other papers, so that the same statistics apply; the
+//! errors of the accelerations are omitted.
 
 use super::contestants::{RadarFilter, RadarSetup};
 use super::truth::{Manoeuvre, RadarDraw, Trajectory};

@@ -1,9 +1,9 @@
 //! Scenario 3: the filters' noise parameters, varied one at a time.
 //!
-//! After this file the reader knows the settings of table 3, what is asked of the runs at each, and how the answers are written as a
-//! table. The truth and the measurements of a run depend on the seed and the run alone: all settings and all filters see the same,
-//! so that a difference between filters is that of the runs, one by one. A run is called divergent when its percentage fit error exceeds
-//! [`DIVERGENT_FIT_ERROR`], and its measured bearings jump when two that follow each other differ by more than π.
+//! The sweep covers the settings of table 3 and writes the answers at each setting as a table. The truth and the measurements of a run
+//! depend only on the seed and the run. All settings and all filters see the same data, so differences between filters are paired run by
+//! run. A run is called divergent if its percentage fit error exceeds [`DIVERGENT_FIT_ERROR`]. Its measured bearings jump if two
+//! successive ones differ by more than π.
 
 use super::contestants::RadarSetup;
 use super::outcome::{RunOutcome, outcomes};

@@ -1,9 +1,8 @@
-//! Where the target goes and what the radar sees of it.
+//! The path of the target and the measurements of the radar.
 //!
-//! After this file the reader knows both trajectories: a state that constant velocity or constant acceleration moves, with the noise of the
-//! model, and that begins every manoeuvre without an acceleration; and the measurements, range and bearing with noise, the bearing
-//! reported in (−π, π] as radars do. The target starts at the upper left of the radar and may cross the negative x-axis, where such a
-//! bearing jumps by almost 2π.
+//! In both trajectories the state moves with constant velocity or constant acceleration and the model's noise, and begins every manoeuvre
+//! without an acceleration. The measurements are range and bearing with noise; the bearing is reported in (−π, π], as radars do. The
+//! target starts at the upper left of the radar and may cross the negative x-axis, where such a bearing jumps by almost 2π.
 //!
 //! The random numbers of a run come from two streams in a fixed order, so that neither depends on how many the other takes: those of the
 //! trajectory from stream 2m of the seed, six a step (of [x, y, ẋ, ẏ, ẍ, ÿ]; a straight step does not use the last two), and those of the

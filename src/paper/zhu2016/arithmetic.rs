@@ -1,7 +1,6 @@
-//! The claims of zhu2016 that arithmetic decides: on the published figures, and exactly.
+//! The claims of zhu2016 that arithmetic decides, on the published figures and exactly.
 //!
-//! After this file the reader knows which of the paper's statements need no runs, because they contradict the paper's own table, or
-//! because points and weights decide them.
+//! These statements need no runs: they contradict the paper's own table, or points and weights decide them.
 
 use super::quantity_of_row;
 use crate::number::Rational;

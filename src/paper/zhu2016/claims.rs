@@ -1,7 +1,7 @@
 //! The claims of zhu2016, each with its judge.
 //!
-//! After this file the reader knows what the paper's figures can and cannot mean. The claims are in `spec/zhu2016/claims.toml`, in the
-//! same order; every judge computes its evidence and is called once in [`judge`]. Those that need no runs are in [`arithmetic`].
+//! The claims are in `spec/zhu2016/claims.toml`, in the same order. Every judge computes its evidence and is called once in [`judge`]. The
+//! judges that need no runs are in [`arithmetic`].
 
 use super::{arithmetic, quantity_of_row, scenario};
 use crate::filter::Filter;

@@ -1,9 +1,9 @@
 //! A stand-in for OMTM-IMM, the fifth system of zhu2016's comparison.
 //!
-//! After this file the reader knows what is run in that column, and that it is **not** the published filter. The equations of the
-//! "optimal mode transition matrix" IMM (Zhou, Cai, Sun and Shen, 2014) could not be obtained. Its abstract fixes three things: the
-//! transition matrix is replaced by linear-minimum-variance weights, these come from the estimates' covariances, and they are
-//! diagonal matrices, so that each component of the state is weighted by itself. This is the plainest filter of that kind.
+//! This column is **not** the published filter. The equations of the "optimal mode transition matrix" IMM (Zhou, Cai, Sun and Shen, 2014)
+//! could not be obtained. Its abstract fixes three things: linear-minimum-variance weights replace the transition matrix, they come from
+//! the estimates' covariances, and they are diagonal matrices, so that each component of the state is weighted separately. This is the
+//! plainest filter of that kind.
 //!
 //! No claim about OMTM-IMM itself follows from it.
 

@@ -1,7 +1,7 @@
 //! Zhu, Wang and Yuan 2016: the IMM filter with fifth-degree cubature Kalman filters.
 //!
-//! After this folder the reader knows where each equation of the paper is in the code, its simulation with everything that it leaves open,
-//! and what becomes of its claims ([`claims`]).
+//! A guide from each equation of the paper to the code, its simulation with every open choice, and the verdicts on its claims
+//! ([`claims`]).
 //!
 //! The paper in its own order, section by section:
 //!

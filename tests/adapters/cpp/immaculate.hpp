@@ -1,16 +1,16 @@
-// The checking protocol of Immaculate and its certified cases for filters in C++17: one header, with JSON by nlohmann.
+// Immaculate's checking protocol and certified cases for filters in C++17, in one header. JSON by nlohmann.
 //
-// Your filter is a class that is made from a problem and does one step at a time; nothing else is needed:
+// Your filter is a class that is constructed from a problem and does one step at a time; nothing else is needed:
 //
 //     struct Adapter {
-//         explicit Adapter(const immaculate::Part &problem);                     // throws Skipped for what it has not
+//         explicit Adapter(const immaculate::Part &problem);                     // throws Skipped for what it cannot do
 //         immaculate::Shown step(const immaculate::Measured &z);                 // z is empty without a detection
 //         immaculate::Shown step(const immaculate::Measured &z, const immaculate::Part &entry);  // or this, for format 2
 //     };
 //
 // `speak<Adapter>(program)` is then the whole `main` of a program for `immaculate check -- PROGRAM`, and `judge<Adapter>(program, one)`
-// the whole of a unit test of one certified case; `cases(folder, program)` reads those that `immaculate cases copy FOLDER` writes.
-// What the values mean is in spec/formats.md. What a filter throws becomes the protocol's `error`, with the step and the message.
+// the whole of a unit test of one certified case; `cases(folder, program)` reads the files that `immaculate cases copy FOLDER` writes.
+// spec/formats.md defines the values. An exception of the filter becomes the protocol's `error`, with the step and the message.
 #pragma once
 
 #include <algorithm>
@@ -32,13 +32,13 @@ namespace immaculate {
 
 using nlohmann::json;
 
-// The protocol that this header speaks. Another one is refused with a sentence.
+// The protocol of this header. Any other is refused with a message.
 inline constexpr const char *PROTOCOL = "immaculate-check/1";
 
-// An error of more than so many times the rounding noise cannot be rounding: LIMIT of `immaculate check`.
+// An error larger than this multiple of the rounding noise cannot be rounding: LIMIT of `immaculate check`.
 inline constexpr double LIMIT = 100;
 
-// What is under test, as `ready` says it.
+// The program under test, as in the `ready` message.
 struct Program {
     std::string name;
     std::vector<std::string> kinds;                            // which filters there are
@@ -48,7 +48,7 @@ struct Program {
     bool validates = false;                                    // whether it rejects what must be rejected
 };
 
-// Thrown where a problem needs what the filter does not have.
+// Thrown if a problem needs something that the filter does not have.
 struct Skipped : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
@@ -61,7 +61,7 @@ struct Rejected : std::runtime_error {
 
 // ---------------------------------------------------------------------------------------------------------- reading a problem
 
-// A part of a problem, which knows its place and says it in every error. It lives no longer than the problem.
+// A part of a problem, which names its place in every error. It lives no longer than the problem.
 class Part {
 public:
     explicit Part(const json &data, std::string place = "problem") : data_(&data), place_(std::move(place)) {}
@@ -93,7 +93,7 @@ public:
         return data_->get<std::string>();
     }
 
-    // A vector of whatever type is made by its size and written by [i].
+    // A vector of any type that is constructed by its size and written by [i].
     template <class Vector>
     Vector vector(std::size_t size) const {
         const std::vector<Part> entries = sized(size, "entries");
@@ -102,7 +102,7 @@ public:
         return result;
     }
 
-    // A matrix of whatever type is made by its sides and written by (i, k).
+    // A matrix of any type that is constructed by its dimensions and written by (i, k).
     template <class Matrix>
     Matrix matrix(std::size_t row_count, std::size_t column_count) const {
         const std::vector<Part> rows = sized(row_count, "rows");
@@ -114,7 +114,7 @@ public:
         return result;
     }
 
-    // A list of as many entries as there must be.
+    // A list with the required number of entries.
     std::vector<Part> sized(std::size_t size, const std::string &what = "entries") const {
         const std::vector<Part> result = parts();
         if (result.size() != size)
@@ -159,7 +159,7 @@ inline bool has_correlated_noise(const Part &problem) {
 
 // ----------------------------------------------------------------------------------------------------------- showing a step
 
-// What can be shown, in the order in which it is computed: the name, and whether each mode has one.
+// The values that can be shown, in the order of computation: the name, and whether each mode has one.
 struct Quantity {
     const char *name;
     bool is_of_mode;
@@ -179,7 +179,7 @@ struct HasSides : std::false_type {};
 template <class T>
 struct HasSides<T, std::void_t<decltype(std::declval<T>().rows()), decltype(std::declval<T>().cols())>> : std::true_type {};
 
-// A number, a list of whatever can be iterated, or a matrix by rows, whatever its order in memory; one column is a list.
+// A number, anything that can be iterated as a list, or a matrix by rows in any memory order; one column is a list.
 template <class T>
 json list(const T &value) {
     if constexpr (std::is_arithmetic_v<T>) {
@@ -199,16 +199,16 @@ json list(const T &value) {
     }
 }
 
-// What a filter shows of a step: as much as it can, from `combined.mean` alone to everything.
+// The values that a filter shows in a step, from `combined.mean` alone to everything.
 class Shown {
 public:
-    // Of all modes together: set("combined.mean", x)
+    // For all modes together: set("combined.mean", x)
     template <class T>
     Shown &set(const std::string &name, const T &value) {
         return set_in(step_, name, false, list(value));
     }
 
-    // Of a mode, counted from 0: set("mixed.mean", j, x)
+    // For a mode, counted from 0: set("mixed.mean", j, x)
     template <class T>
     Shown &set(const std::string &name, std::size_t mode, const T &value) {
         json &modes = step_["modes"];
@@ -286,7 +286,7 @@ inline json ready(const Program &program, const json &start) {
             {"conventions", json(program.conventions)}, {"precision", program.precision}, {"validates", program.validates}};
 }
 
-// The whole program: answers one message a line until `stop`. Its result is the exit status.
+// The whole program: answers one message per line until `stop`, and returns the exit status.
 template <class Filter>
 int speak(const Program &program, std::istream &in = std::cin, std::ostream &out = std::cout) {
     try {
@@ -324,8 +324,8 @@ struct Case {
 
 inline std::ostream &operator<<(std::ostream &out, const Case &one) { return out << one.id(); }
 
-// The cases of a folder that a program is asked for, by name, but for those that must be rejected. Their values and noise are those of the
-// usual conventions in doubles.
+// The cases of a folder for a program, by name, except those that must be rejected. Their values and noise assume the usual conventions
+// in doubles.
 inline std::vector<Case> cases(const std::string &folder, const Program &program) {
     const auto has = [](const std::vector<std::string> &all, const std::string &one) {
         return std::find(all.begin(), all.end(), one) != all.end();
@@ -361,14 +361,14 @@ inline std::vector<Case> cases(const std::string &folder, const Program &program
     return result;
 }
 
-// What is found in a case: why it was skipped, or a sentence for each value that is wrong, in the order of computation.
+// The result of a case: why it was skipped, or a sentence for each wrong value, in the order of computation.
 struct Verdict {
     std::optional<std::string> skipped;
     std::vector<std::string> wrong;
     std::size_t values = 0;  // how many were compared
     bool is_right() const { return !skipped && wrong.empty(); }
-    // The first ones; what comes after the first is often its consequence. In long runs a filter whose covariances do not stay symmetric
-    // may be right by `immaculate check`, which judges each equation on the filter's own values, and still be too far off here.
+    // The first ones; later ones are often their consequence. In long runs a filter whose covariances do not stay symmetric may be right by
+    // `immaculate check`, which judges each equation on the filter's own values, and still be too far off here.
     std::string text(std::size_t most = 5) const {
         std::ostringstream result;
         if (skipped) return "skipped: " + *skipped;
@@ -406,7 +406,7 @@ private:
         for (const Quantity &quantity : QUANTITIES)
             for (std::size_t j = 0; j < (quantity.is_of_mode ? mode_count : 1); ++j) {
                 const json *value = at(shown, quantity, j), *right = at(expected, quantity, j);
-                // What is not there in the case, such as a gain without a detection, is passed over.
+                // Values that the case does not have, such as a gain without a detection, are ignored.
                 if (value != nullptr && right != nullptr) check_value(k, quantity, j, *value, *right);
             }
     }
@@ -421,7 +421,7 @@ private:
             return complain(place + ": it has the shape " + shape(shown) + ", not " + shape(expected));
         const bool is_finite = std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
         const bool is_unused = quantity.is_of_mode && case_.trace["steps"][k].at("predicted_mode_probabilities")[j] == 0.0;
-        // Where rounding is as large as the value's unit nobody can tell, and no output depends on a mode of probability zero.
+        // If rounding is as large as the value's scale, nothing can be decided; and no output depends on a mode of probability zero.
         if (is_finite && (!(LIMIT * noise <= 1) || is_unused)) return;
         for (std::size_t i = 0; i < values.size(); ++i) {
             const double ratio = error(values[i], rights[i], noise, scales[i], is_angle(k, quantity, i));
@@ -447,7 +447,7 @@ private:
         return std::isnan(ratio) ? std::numeric_limits<double>::infinity() : ratio;
     }
 
-    // Whether a number counts modulo 2 pi: angles in means of the state, and in what a sensor is predicted to measure.
+    // Whether a number counts modulo 2 pi: angles in means of the state and in predicted measurements.
     bool is_angle(std::size_t k, const Quantity &quantity, std::size_t i) const {
         const auto is_declared = [](const json &component) {
             return component == "bearing" || (component.is_array() && component.size() > 2 && component[2] == "angle");
@@ -506,7 +506,7 @@ private:
     Verdict verdict_;
 };
 
-// Runs a filter on a case and compares all that it shows.
+// Runs a filter on a case and compares every value that it shows.
 template <class Filter>
 Verdict judge(const Program &program, const Case &one) {
     return Comparison(one).of(answer<Filter>(program, one.problem));

@@ -1,6 +1,6 @@
-//! Section 6: what the paper concludes of both trajectories together.
+//! Section 6: the paper's conclusions about both trajectories together.
 //!
-//! After this file the reader knows which of the conclusions the paper's own tables bear, and which the runs do.
+//! Some conclusions follow from the paper's own tables, others from the runs.
 
 use super::super::{GOOD_FIT_ERROR, RUNS};
 use super::evidence::{

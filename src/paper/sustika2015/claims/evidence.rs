@@ -1,7 +1,6 @@
-//! The runs that the judges of sustika2015 ask about, and the questions that several of them ask.
+//! The runs behind the judges of sustika2015, and the questions that several judges share.
 //!
-//! After this file the reader knows how many runs each judgement rests on, and how two filters are compared whose errors are percentage fit
-//! errors: run by run, since both saw the same, as a difference or as a part.
+//! Two filters with percentage fit errors are compared run by run, because both saw the same, as a difference or as a ratio.
 //!
 //! ```text
 //! scenarios 1 and 2, three trajectories       all runs

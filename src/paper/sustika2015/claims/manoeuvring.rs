@@ -1,7 +1,7 @@
 //! Section 5.2: scenarios 1 and 2 on the trajectory with manoeuvres.
 //!
-//! After this file the reader knows what the times of the manoeuvres, which table 1 seems to have the wrong way round, do to the
-//! comparison: with the noises of scenario 2 they decide which filter is the better one.
+//! Table 1 seems to have the times of the manoeuvres the wrong way round. With the noises of scenario 2, these times decide which filter
+//! is better.
 
 use super::evidence::{
     CONVERTED, PLAIN, RadarEvidence, Runs, WINDOWS, WRAPPED, clauses, less_limit, opposite, published, words,

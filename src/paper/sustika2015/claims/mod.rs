@@ -1,8 +1,8 @@
 //! The claims of sustika2015, each with its judge.
 //!
-//! After this folder the reader knows what is left of the paper's comparison: which filter is better where, by how much and how surely, and
-//! what made the unscented one diverge. The claims are in `spec/sustika2015/claims.toml`, in the same order; every judge computes its
-//! evidence and is called once in [`judge`]. Those that need no runs are in [`reasoning`].
+//! They decide which filter is better where, by how much and how surely, and what made the unscented filter diverge. The claims are in
+//! `spec/sustika2015/claims.toml`, in the same order. Every judge computes its evidence and is called once in [`judge`]. The judges that
+//! need no runs are in [`reasoning`].
 //!
 //! - `evidence`: the runs that the judges share, and how two filters are compared;
 //! - `straight`: section 5.1, scenarios 1 and 2 without manoeuvres;

@@ -1,6 +1,6 @@
-//! Scenario 3: the filters' noises varied, and the cause of the divergence.
+//! Scenario 3: varied filter noises, and the cause of the divergence.
 //!
-//! After this file the reader knows at how many noises either filter is better, and that no run diverges whose bearings are wrapped.
+//! They count the noises at which each filter is better. No run with wrapped bearings diverges.
 
 use super::super::divergence::Divergences;
 use super::super::outcome::RunOutcome;

@@ -1,7 +1,7 @@
-//! Does anything that the paper leaves open give the eight figures of tables 4 and 5?
+//! Can the open choices of the paper give the eight figures of tables 4 and 5?
 //!
-//! After this file the reader knows how near the runs come: every open choice by itself and every reading of (39), each figure in the
-//! standard errors of as many runs as the paper has; and whether the two columns of a table can be of the same runs.
+//! Every open choice is varied by itself, and every reading of (39). Each figure is compared in standard errors for the paper's number of
+//! runs. A second question is whether the two columns of a table can come from the same runs.
 
 use super::super::RUNS;
 use super::evidence::{CONVERTED, Configuration, RadarEvidence, published};

@@ -1,6 +1,6 @@
 //! Section 5.1: scenarios 1 and 2 on the trajectory without manoeuvres.
 //!
-//! After this file the reader knows that the paper reads its table 4 the wrong way round, and what of the table is in the runs.
+//! The paper reads its table 4 the wrong way round; the runs confirm only part of the table.
 
 use super::super::GOOD_FIT_ERROR;
 use super::evidence::{CONVERTED, Configuration, PLAIN, RadarEvidence, Runs, WRAPPED, less_limit, published, words};

@@ -3,7 +3,7 @@
 % Lists of objects are cells: problem.modes{j}, problem.initial.modes{j}, problem.measurements{k}, problem.sensors{s}. Matrices are
 % matrices, lists of numbers are columns. problem.state has the names, problem.is_angle says which are angles. A measurement
 % has is_angle, one an entry of z. Nothing else is renamed; what `problem.measurement.position` points at counts from 0.
-% What holds in a step, and which entries of z are there, says immaculate.step_of.
+% immaculate.step_of gives the models of a step and the entries of z that are present.
 function problem = read_problem(file)
   problem = jsondecode(fileread(file));
   problem.modes = immaculate.cells(problem.modes);

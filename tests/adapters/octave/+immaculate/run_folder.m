@@ -4,9 +4,9 @@
 %   octave-cli --eval "addpath('tests/adapters/octave'); immaculate.run_folder('problems', 'answers', example_filter())"
 %   immaculate check --answers answers
 %
-% Through files and not through a pipe: Octave's fgetl and fgets wait for the line after the one that they return, so that a program
-% under `immaculate check -- octave-cli ...` would wait for a message that comes only after its answer. immaculate.run_problem says what a
-% filter is. immaculate.run_folder(problems, answers, filter, 'csv') writes tables in place of JSON.
+% It uses files because a pipe would hang: Octave's fgetl and fgets wait for the line after the one that they return, so a program under
+% `immaculate check -- octave-cli ...` would wait for a message that comes only after its answer. immaculate.run_problem describes a
+% filter. immaculate.run_folder(problems, answers, filter, 'csv') writes tables instead of JSON.
 function run_folder(problems, answers, filter, form)
   if nargin < 4
     form = 'json';

@@ -2,13 +2,13 @@
 %
 % filter is a struct:
 %
-%   name, kinds, formats   what is under test, which filters there are, and which formats of problems it reads
+%   name, kinds, formats   the name of the program, its kinds of filter, and the problem formats that it reads
 %   conventions            those that differ from the cases': struct('first_step', 'unmixed'), or struct()
 %   start                  imm = start(problem): your filter at step 0
 %   step                   [imm, shown] = step(imm, now): one step; `now` is from immaculate.step_of
 %
-% start finds the declared conventions in problem.conventions. An error with the identifier immaculate:skipped says what the filter has not;
-% any other becomes the answer's error with its step. shown has what the filter can show, by the names of spec/formats.md:
+% start finds the declared conventions in problem.conventions. An error with the identifier immaculate:skipped says what the filter
+% cannot do; any other error becomes the answer's error with its step. shown has the filter's values under the names of spec/formats.md:
 % shown.combined.mean, shown.modes{j}.mixed.covariance, ...
 function answer = run_problem(filter, problem)
   answer = struct('type', 'answer', 'id', problem.id);

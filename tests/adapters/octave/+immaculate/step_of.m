@@ -1,13 +1,13 @@
 % now = immaculate.step_of(problem, k): what holds in step k of a problem from immaculate.read_problem.
 %
-%   now.z             the entries that are there; empty without a detection
+%   now.z             the entries that are present; empty without a detection
 %   now.rows          which of the sensor's entries these are
 %   now.R             their noise
-%   now.measurement   what the sensor sees, with H, components and is_angle of these entries alone
+%   now.measurement   the measurement, with H, components and is_angle of these entries only
 %   now.F{j}, now.Q{j}, now.transition, now.T
 %
-% F{j} and Q{j} are empty or not numbers where the mode has formulas or a named model. jsondecode makes NaN of a null inside a
-% list of numbers: an entry of z that is missing is NaN there, and left out here.
+% F{j} and Q{j} are empty or not numeric if the mode has formulas or a named model. jsondecode turns a null inside a list of numbers
+% into NaN: a missing entry of z is NaN there, and is omitted here.
 function now = step_of(problem, k)
   entry = problem.measurements{k};
   source = problem;

@@ -4,8 +4,8 @@
 %   octave-cli --eval "addpath('tests/adapters/octave'); immaculate.test_folder('problems', example_filter())"
 %
 % results is a struct array with the names that matlab.unittest.TestResult has: Name, Passed, Failed, Incomplete (what the filter skips),
-% and Details.DiagnosticRecord, the sentences, each with equation, step and mode. Without results asked for, a failure is an error, so
-% that the command ends with status 1. Of the failures of a case the first are printed; later ones may follow from these.
+% and Details.DiagnosticRecord, the sentences, each with equation, step and mode. Without an output argument, a failure is an
+% error, so that the command ends with status 1. Only the first failures of a case are printed; later ones may follow from them.
 function results = test_folder(problems, filter)
   files = dir(fullfile(problems, '*.problem.json'));
   found = struct('Name', {}, 'Passed', {}, 'Failed', {}, 'Incomplete', {}, 'Details', {});

@@ -1,7 +1,7 @@
 % immaculate.write_answer(folder, answer, form): writes an answer where `immaculate check --answers FOLDER` looks for it.
 %
-% The form is 'json' or 'csv': a long table with one number a line, which cannot tell an error or why a problem was skipped. The JSON is
-% written here, since Octave's jsonencode writes numbers below 2.2e-16 as 0, small probabilities too.
+% The form is 'json' or 'csv': a long table with one number per line, which cannot carry an error or the reason for a skip. The JSON is
+% written here, because Octave's jsonencode writes numbers below 2.2e-16 as 0, small probabilities too.
 function write_answer(folder, answer, form)
   if strcmp(form, 'csv') && isfield(answer, 'steps') && ~isfield(answer, 'error')
     write_text(fullfile(folder, [answer.id '.csv']), table_of(answer));

@@ -1,7 +1,7 @@
 // My filter under test: immaculate check -- build/my_filter
 //
-// MyFilter is a textbook interacting multiple model filter whose modes are Kalman filters, and it is right. Put your own in its place: what is
-// marked CHANGE HERE is all that Immaculate sees of a filter. immaculate.hpp can stay as it is.
+// MyFilter is a correct textbook interacting multiple model filter with Kalman filters. Replace it with your own: Immaculate sees only the
+// parts marked CHANGE HERE. immaculate.hpp can stay as it is.
 
 #include "immaculate.hpp"
 
@@ -44,8 +44,8 @@ public:
         probabilities = problem["initial"]["mode_probabilities"].vector<VectorXd>(r);
     }
 
-    // CHANGE HERE: one step of your filter; z is empty without a detection. What it can show goes into `shown`, from combined.mean alone to
-    // everything: the more, the nearer a verdict comes to the line that is wrong.
+    // CHANGE HERE: one step of your filter; z is empty without a detection. Its values go into `shown`, from combined.mean alone to
+    // everything: the more it shows, the closer the verdict gets to the wrong line.
     immaculate::Shown step(const immaculate::Measured &z) {
         immaculate::Shown shown;
         const Eigen::Index r = transition.rows();
@@ -112,6 +112,6 @@ private:
 };
 
 int main() {
-    // CHANGE HERE: your filter's name, and which filters it has; `immaculate cases list` names them
+    // CHANGE HERE: your filter's name and its kinds of filter; `immaculate cases list` names the kinds
     return immaculate::speak<MyFilter>({"my filter", {"kalman"}});
 }

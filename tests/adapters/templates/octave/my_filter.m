@@ -4,8 +4,8 @@
 %   octave-cli --eval "immaculate.run_folder('problems', 'answers', my_filter())"
 %   immaculate check --answers answers
 %
-% It is a textbook interacting multiple model filter whose modes are Kalman filters, and it is right. Put your own in its place: what is
-% marked CHANGE HERE is all that Immaculate sees of a filter. The folder +immaculate can stay as it is.
+% It is a correct textbook interacting multiple model filter with Kalman filters. Replace it with your own: Immaculate sees only the parts
+% marked CHANGE HERE. The folder +immaculate can stay as it is.
 function filter = my_filter()
   filter.name = 'my filter';                           % CHANGE HERE
   filter.kinds = {'kalman'};                           % CHANGE HERE: which filters it has; `immaculate cases list` names them
@@ -24,7 +24,7 @@ function mine = start(problem)
 end
 
 % CHANGE HERE: one step of your filter. `now` has F{j} and Q{j} of each mode, the measurement's H, R, transition(i, j) from mode i to mode j,
-% and z, which is empty without a detection. `shown` is what your filter can show, from shown.combined alone to everything.
+% and z, which is empty without a detection. `shown` holds the values of your filter, from shown.combined alone to everything.
 function [mine, shown] = step(mine, now)
   r = numel(now.F);
   c = now.transition' * mine.probabilities;

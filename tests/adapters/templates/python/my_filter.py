@@ -1,7 +1,7 @@
 """My filter under test: immaculate check -- python3 my_filter.py
 
-MyFilter is a textbook interacting multiple model filter whose modes are Kalman filters, and it is right. Put your own in its place: what is
-marked CHANGE HERE is all that Immaculate sees of a filter. It needs numpy.
+MyFilter is a correct textbook interacting multiple model filter with Kalman filters. Replace it with your own: Immaculate sees only the parts
+marked CHANGE HERE. It needs numpy.
 """
 
 import json
@@ -14,7 +14,7 @@ KINDS = ["kalman"]  # CHANGE HERE: which filters it has; `immaculate cases list`
 
 
 class Skip(Exception):
-    """Raised for a problem that the filter is not made for."""
+    """Raised for a problem that the filter cannot do."""
 
 
 class MyFilter:
@@ -34,8 +34,8 @@ class MyFilter:
     def step(self, z):
         """CHANGE HERE: one step of your filter; z is None without a detection.
 
-        It returns what your filter can show, from shown["combined"] alone to everything. The more, the nearer a verdict comes to the line
-        that is wrong.
+        It returns your filter's values, from shown["combined"] alone to everything. The more it shows, the closer the verdict gets to the
+        wrong line.
         """
         shown = {"modes": []}
         modes = range(len(self.F))
@@ -103,7 +103,7 @@ def estimate(mean, covariance):
     return {"mean": mean, "covariance": covariance}
 
 
-# What follows speaks with Immaculate, and can stay as it is.
+# The rest talks to Immaculate and can stay as it is.
 
 
 def main():

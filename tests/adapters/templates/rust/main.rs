@@ -1,7 +1,7 @@
 //! My filter under test, as `cargo build --release && immaculate check -- target/release/my_filter` judges it.
 //!
-//! `MyFilter` is a textbook interacting multiple model filter whose modes are Kalman filters, and it is right. Put your own in its place:
-//! what is marked CHANGE HERE is all that Immaculate sees of a filter.
+//! `MyFilter` is a correct textbook interacting multiple model filter with Kalman filters. Replace it with your own: Immaculate sees only
+//! the parts marked CHANGE HERE.
 
 use nalgebra::{DMatrix, DVector};
 use serde_json::{Value, json};
@@ -32,7 +32,7 @@ struct MyFilter {
 }
 
 impl MyFilter {
-    /// CHANGE HERE: your filter from a problem. What it is not made for is an `Err` with the reason.
+    /// CHANGE HERE: your filter from a problem. If it cannot do the problem, return an `Err` with the reason.
     fn new(problem: &Value) -> Result<Self, String> {
         // A single filter says here: if modes.len() > 1 { return Err("there is one mode only".to_owned()) }
         if problem["measurement"]["kind"] != "linear" {
@@ -57,8 +57,9 @@ impl MyFilter {
         })
     }
 
-    /// CHANGE HERE: one step of your filter; z is none without a detection. It returns what your filter can show, from `combined` alone to
-    /// everything: the more, the nearer a verdict comes to the line that is wrong. What it cannot do is an `Err` with the reason.
+    /// CHANGE HERE: one step of your filter; z is none without a detection. It returns your filter's values, from `combined` alone to
+    /// everything: the more it shows, the closer the verdict gets to the wrong line. For a step that it cannot do, return an `Err` with the
+    /// reason.
     fn step(&mut self, z: Option<&Vector>) -> Result<Value, String> {
         let c = self.transition.transpose() * &self.probabilities;
         let mut modes = Vec::new();
@@ -96,7 +97,7 @@ impl MyFilter {
         }))
     }
 
-    /// What a mode starts from. One that no mode leads to keeps its own estimate.
+    /// The mixed estimate of a mode. A mode that no mode leads to keeps its own estimate.
     fn mix(&self, c: &Vector, j: usize) -> (Estimate, Value) {
         let mut weights = Vector::zeros(c.len());
         weights[j] = 1.0;
@@ -166,7 +167,7 @@ fn mixture(weights: &Vector, estimates: &[Estimate]) -> Estimate {
     Estimate { mean, covariance }
 }
 
-// What follows speaks with Immaculate, and can stay as it is.
+// The rest talks to Immaculate and can stay as it is.
 
 pub fn main() {
     for line in std::io::stdin().lines() {
