@@ -187,7 +187,7 @@ fn conversions(directory: Option<&Path>) -> Result<String, Refusal> {
     Ok(report::conversion::table())
 }
 
-/// Scenario 3 of sustika2015 in the place of the papers' runs.
+/// Scenario 3 of sustika2015 instead of the papers' runs.
 fn sweep(arguments: &ReproduceArguments, papers: &[Paper], chosen: &Choices) -> Result<String, Refusal> {
     if !arguments.papers.is_empty() && papers != [Paper::Sustika2015] {
         return Err(Refusal::request("sustika2015 alone has a sweep"));

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Moving the values into the turn of the reference before the plain equations see them is the same, and leaves the equations as they are
-//! printed. An updated mean is wrapped to (−π, π]; whoever shows another turn of any mean shows the same angle.
+//! printed. An updated mean is wrapped to (−π, π]; another turn of any mean is the same angle.
 //!
 //! | average | its reference |
 //! |---|---|

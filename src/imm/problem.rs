@@ -40,7 +40,7 @@ where
     /// The measurement noise, R — sustika2015 (4), where it is diag(σ_r², σ_θ²): M × M, symmetric positive semidefinite, in products of
     /// the units of the measurement. A measurement may be exact; what it leaves of S must be definite.
     ///
-    /// Example: a radar of 10 m and ½ rad. Deviations in the place of variances are a famous mistake.
+    /// Example: a radar of 10 m and ½ rad. Deviations instead of variances are a famous mistake.
     ///
     /// ```
     /// use immaculate::number::Real;

@@ -433,7 +433,7 @@ where
         Some(by_rows.collect())
     }
 
-    /// Puts other numbers, by rows, in the place of a quantity, if the step has such a value. They must be as many as [`Step::values`]
+    /// Replaces the numbers of a quantity, by rows, if the step has such a value. They must be as many as [`Step::values`]
     /// gives.
     pub fn replace(&mut self, quantity: Quantity, j: usize, values: &[T]) {
         let (rows, columns) = self.shape_of(quantity);

@@ -174,7 +174,7 @@ where
         }
     }
 
-    /// The table with unbiased mixing, [`augmented`]. The combined estimate is that of the mixture as ever.
+    /// The table with unbiased mixing, [`augmented`]. The combined estimate is still the mixture's.
     #[must_use]
     pub fn with_unbiased_mixing(self) -> Self {
         Self {

@@ -91,7 +91,7 @@ impl Rational {
         self.value.as_ref().map_or(f64::NAN, nearest_double)
     }
 
-    /// The decimal nearest to the number with so many digits after the point, ties to the even last digit.
+    /// The decimal nearest to the number with a number of digits after the point, ties to the even last digit.
     ///
     /// Example: −2/3 to four digits.
     ///
@@ -123,7 +123,7 @@ impl Rational {
         self.sign() == Some(Ordering::Greater)
     }
 
-    /// The number multiplied by itself so many times; the power zero of every decided number is one.
+    /// The number raised to a power; the power zero of every decided number is one.
     #[must_use]
     pub fn pow(&self, exponent: u32) -> Self {
         // Powers of numbers without a common factor have none either, so the fraction stays in lowest terms.

@@ -88,7 +88,7 @@ impl Surd {
             .map_or(f64::NAN, f64::from_bits)
     }
 
-    /// The decimal nearest to the number with so many digits after the point.
+    /// The decimal nearest to the number with a number of digits after the point.
     pub fn to_decimal(&self, digits: u32) -> String {
         match self.round(|value| decimal::nearest(value, digits)) {
             Some(scaled) => decimal::write(&scaled, digits),

@@ -38,7 +38,7 @@ pub enum NotCertified {
     Undecided {
         /// What.
         reason: String,
-        /// With so many bits.
+        /// The number of bits.
         bits: u32,
     },
 }
@@ -102,7 +102,7 @@ pub fn certify(problem: &ProblemFile) -> Result<Certified, NotCertified> {
     }
 }
 
-/// As [`certify`], by enclosures alone, with so many bits at first.
+/// As [`certify`], by enclosures alone, beginning with a number of bits.
 ///
 /// # Errors
 ///
@@ -177,7 +177,7 @@ pub fn certified_as_far_as_it_goes(problem: &ProblemFile) -> Result<(Trace, usiz
     Ok((trace, certified))
 }
 
-/// Tries with so many bits, then with twice as many until an attempt is decided; what it gives, and the bits.
+/// Tries with a number of bits, then with twice as many, until an attempt is decided; its result, and the bits.
 fn with_more_and_more_bits<V>(
     first_bits: u32,
     mut attempt: impl FnMut(u32) -> Result<V, NotCertified>,
@@ -353,7 +353,7 @@ pub fn long_csv(problem: &ProblemFile, trace: &Trace, trace_text: &str) -> Strin
     })
 }
 
-/// A number rounded to so many significant digits.
+/// A number rounded to some significant digits.
 fn rounded(value: f64, digits: usize) -> f64 {
     format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
 }
@@ -422,7 +422,7 @@ fn decimals_into(
 
 fn undecided_place(step: usize, quantity: Quantity, mode: usize) -> String {
     format!(
-        "step {step}, mode {mode}: {} is not decided to so many digits",
+        "step {step}, mode {mode}: {} is not decided to this many digits",
         quantity.name()
     )
 }

@@ -112,7 +112,8 @@ pub struct ProblemFile {
     pub conventions: Conventions,
     /// One entry a step: 1, 2, 3, …
     pub measurements: Vec<MeasurementAt>,
-    /// Conventions that are not the papers', by the ids of their variants: no key of the file, but what whoever runs it declares.
+    /// Conventions that are not the papers', by the ids of their variants. They are no key of the file; the program under test declares
+    /// them.
     #[serde(skip)]
     pub declared: Vec<&'static str>,
     /// Whether it has no values that need [`Needs::Consistency`]: a case that was published before there were any. No key of the file.

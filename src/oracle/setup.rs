@@ -425,7 +425,7 @@ impl ProblemFile {
 /// The rules in doubles that were asked for, by filter and dimension.
 static RULES: Mutex<BTreeMap<String, Option<Rule<RandomRounding, Dyn>>>> = Mutex::new(BTreeMap::new());
 
-/// So many rules are kept; every α, β and κ is another, and a program that answers for days may see any number of them.
+/// At most this many rules are kept; every α, β and κ is another, and a program that answers for days may see any number of them.
 const RULES_KEPT: usize = 100;
 
 /// A matrix from a list of rows.

@@ -285,7 +285,7 @@ impl ProblemFile {
         }
     }
 
-    /// Sensors are told apart by their names.
+    /// Sensors are distinguished by their names.
     fn check_names_of_sensors(&self) -> Result<(), Invalid> {
         for (index, sensor) in self.sensors.iter().enumerate() {
             let has_name = |other: &SensorFile| other.name == sensor.name;
@@ -389,7 +389,7 @@ impl ProblemFile {
     }
 }
 
-/// A trace is held in memory as a whole: so many numbers take about a gigabyte while they are written.
+/// A trace is held in memory as a whole: this many numbers take about a gigabyte while they are written.
 const MOST_NUMBERS: usize = 10_000_000;
 
 /// The most linearisations of an update.

@@ -196,8 +196,8 @@ impl Paper {
         }
     }
 
-    /// The most runs with which the claims can be judged. The judges keep the runs of several scenarios in memory, and with so many they
-    /// need four to five gigabytes: 2.4 MB, measured, for a run of each scenario of derbez2000, 2.1 MB of liu2017, 0.3 MB of zhu2016 and
+    /// The most runs with which the claims can be judged. The judges keep the runs of several scenarios in memory, which then takes
+    /// four to five gigabytes: 2.4 MB, measured, for a run of each scenario of derbez2000, 2.1 MB of liu2017, 0.3 MB of zhu2016 and
     /// 4 kB of sustika2015.
     pub fn most_judged_runs(self) -> usize {
         match self {

@@ -60,7 +60,7 @@ pub struct Run {
 }
 
 impl Run {
-    /// A run that has not begun, with room for so many steps.
+    /// A run that has not begun, with room for a number of steps.
     pub fn with_room_for(steps: usize) -> Self {
         Self {
             errors: Vec::with_capacity(steps),

@@ -162,8 +162,8 @@ pub enum NotProven {
         /// The bound.
         radius: String,
     },
-    /// The product's spectral radius is below the bound, or cannot be told from it.
-    #[error("the product's spectral radius {}", if *.decided { "is below `product.radius`" } else { "cannot be told from `product.radius` with these numbers" })]
+    /// The product's spectral radius is below the bound, or cannot be distinguished from it.
+    #[error("the product's spectral radius {}", if *.decided { "is below `product.radius`" } else { "cannot be distinguished from `product.radius` with these numbers" })]
     Below {
         /// Whether it is known to be below.
         decided: bool,

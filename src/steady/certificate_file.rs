@@ -18,7 +18,7 @@ pub const FORMAT: &str = "immaculate-certificate/1";
 /// Numbers from here to here are noises and times that somebody may have; others are taken for mistakes of scale.
 pub const SANE: [f64; 2] = [1e-12, 1e12];
 
-/// A number of a certificate has at most so many bits above and below its fraction bar together: about three hundred decimal digits. A
+/// A number of a certificate has at most this many bits above and below its fraction bar together: about three hundred decimal digits. A
 /// proof multiplies them with each other, and the time grows with the square of their length.
 const LONGEST_NUMBER: u64 = 1024;
 
@@ -43,7 +43,7 @@ pub struct CertificateFile {
     pub filters: FiltersFile,
     /// The proof.
     pub proof: ProofFile,
-    /// SHA-256 of the filters and the proof, written as compact JSON one after the other: a slip of the pen is told from a wrong proof.
+    /// SHA-256 of the filters and the proof, written as compact JSON one after the other: it detects accidental edits.
     pub digest: String,
 }
 

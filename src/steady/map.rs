@@ -32,8 +32,8 @@ pub struct Map {
 }
 
 impl Map {
-    /// The map over so many points a side, from 10^`decades[0]` to 10^`decades[1]`, evenly in the logarithm. `progress` is told of every
-    /// point that is done; all cores take part, and the map is the same for any number of them.
+    /// The map over a number of points along each side, from 10^`decades[0]` to 10^`decades[1]`, evenly in the logarithm.
+    /// `progress` is called after every point; all cores take part, and the map is the same for any number of them.
     pub fn new(side: usize, decades: [f64; 2], depth: Depth, progress: &(dyn Fn() + Sync)) -> Self {
         let axis = |root: fn(&f64) -> f64| {
             let step = (decades[1] - decades[0]) / (side.max(2) - 1) as f64;

@@ -415,7 +415,7 @@ fn check<const N: usize>(inequality: &'static str, matrix: &SMatrix<Rational, N,
     check_positive_definite(&ldl(matrix)).map_err(|pivot| NoSteadyState::Inequality { inequality, pivot })
 }
 
-/// A rational with so many bits after the point, below the given one by less than their last.
+/// A rational with a number of bits after the point, below the given one by less than the last of them.
 fn rounded(value: &Rational, bits: u32) -> Rational {
     let scale = Rational::new(2, 1).pow(bits);
     let scaled = value.clone() * scale.clone();

@@ -17,7 +17,7 @@ use std::cmp::Ordering;
 /// stay far from the ends of 64 bits.
 pub(super) const EXPONENTS: i64 = 1 << 50;
 
-/// So many bits of a midpoint are kept below the leading bit of its radius: more cannot matter, and cost time.
+/// The bits of a midpoint that are kept below the leading bit of its radius: more cannot matter, and cost time.
 pub(super) const BITS_BELOW_RADIUS: i64 = 40;
 
 /// All numbers from `middle` − `radius` to `middle` + `radius`.
@@ -43,7 +43,7 @@ impl Ball {
         Self::exact(Dyadic::new(value.into(), 0))
     }
 
-    /// The ball with its midpoint rounded to so many bits, the radius enlarged by what that takes away; `None` beyond the exponents.
+    /// The ball with its midpoint rounded to a number of bits, the radius enlarged by the rounding; `None` beyond the exponents.
     ///
     /// The midpoint goes to the nearest multiple of the unit 2ᵏ, by at most 2ᵏ⁻¹; a multiple it is already stays exact. A radius
     /// is raised to at least 2^(−2p−64) of the midpoint, so that the ends of the ball are integers of a few thousand bits at most.

@@ -200,7 +200,7 @@ impl Dyadic {
         }
     }
 
-    /// The decimal nearest to the number with so many significant digits, ties to the even one, in scientific notation; "0" for
+    /// The decimal nearest to the number with a number of significant digits, ties to the even one, in scientific notation; "0" for
     /// zero, `None` if the number is so large or small that writing it out would fill megabytes.
     pub(super) fn to_decimal(&self, digits: u32) -> Option<String> {
         if self.is_zero() {

@@ -27,7 +27,7 @@ const LEAST_FIXED: i64 = 64;
 /// Arguments whose leading bit is this far below the point need no double to begin with: the series is short enough.
 const SMALL: i64 = 30;
 
-/// A double near to a result is used with so many bits after the point: short factors make cheap products.
+/// The bits after the point of a double near a result: short factors make cheap products.
 const SHORT: i64 = 52;
 
 /// The exponential of arguments up to 2 to this power is computed.
@@ -192,7 +192,7 @@ pub(super) fn cos(x: &Ball, precision: i64) -> Option<Ball> {
     circular(x, 1, precision, precision)
 }
 
-/// sin(x + q π/2) with so many bits after the point.
+/// sin(x + q π/2) with a number of bits after the point.
 fn circular(x: &Ball, q: i64, fractional: i64, precision: i64) -> Option<Ball> {
     // Nothing is known of an angle that is known to a turn, or so large that reducing it is not worth its bits.
     if x.radius.top() > 1 || x.middle.top() > LARGEST_ANGLE {
@@ -400,7 +400,7 @@ fn arcus_tangent(a: &Dyadic, b: &Dyadic, s: i64, w: i64) -> Fixed {
     Fixed::new(value, 3 + 6 * sine.error.max(cosine.error) + 1 + rest.error)
 }
 
-/// So many bits after the point matter beside a radius.
+/// The number of bits after the point that matter beside a radius.
 fn bits_that_matter(radius: Bound) -> i64 {
     if radius.is_zero() {
         i64::MAX

@@ -41,7 +41,7 @@ use num_traits::{One, Zero};
 use std::cell::Cell;
 use std::cmp::Ordering;
 
-/// The least precision: with fewer bits nothing can be told from anything.
+/// The least precision: with fewer bits no two numbers can be distinguished.
 const LEAST_PRECISION: u32 = 8;
 
 thread_local! {
@@ -73,7 +73,7 @@ pub struct Enclosure {
 }
 
 impl Enclosure {
-    /// Runs `work` with so many bits a number: everything that is evaluated inside (inputs, rules, equations) has this precision.
+    /// Runs `work` with a number of bits: everything that is evaluated inside (inputs, rules, equations) has this precision.
     ///
     /// Scopes can be nested; the outer precision comes back at the end of the inner one, also if `work` panics. A scope holds
     /// for the thread it is opened in. Fewer than eight bits are eight.

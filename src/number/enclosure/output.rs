@@ -43,14 +43,14 @@ impl Enclosure {
         (is_one && low.is_finite()).then_some(low)
     }
 
-    /// The decimal with so many significant digits that is nearest to every number of the enclosure, ties to the even one, in
+    /// The decimal with a number of significant digits that is nearest to every number of the enclosure, ties to the even one, in
     /// scientific notation such as `-1.234567e-3`; `0` for exactly zero. None if there is no single one, or if the number is
     /// beyond 2 to the power ±2²⁴. No digits count as one.
     ///
     /// Evidence: `the_decimal_of_an_enclosure_is_the_nearest_one`.
     pub fn to_decimal(&self, digits: u32) -> Option<String> {
         let ball = self.ball.as_ref()?;
-        // Log₁₀ 2 = 0.301: so many more digits than bits are certain cannot be determined, and are not worth computing.
+        // Log₁₀ 2 = 0.301: digits beyond the certain bits cannot be determined, and are not worth computing.
         if !ball.is_exact() && i64::from(digits) > self.relative_bits().max(0) / 3 + 9 {
             return None;
         }

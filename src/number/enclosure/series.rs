@@ -29,7 +29,7 @@ impl Fixed {
         Self { value, error }
     }
 
-    /// The same with so many bits fewer: the error in the larger units rounded up, and one for the bits that are cut.
+    /// The same with fewer bits: the error in the larger units rounded up, and one for the bits that are cut.
     pub(super) fn cut(&self, bits: i64) -> Self {
         Self {
             value: shifted(&self.value, -bits),
@@ -79,7 +79,7 @@ pub(super) fn exponential(x: &Dyadic, w: i64) -> Fixed {
 }
 
 impl Fixed {
-    /// The same with so many bits fewer, where the error is still to be multiplied by 2ᵈ.
+    /// The same with fewer bits, where the error is still to be multiplied by 2ᵈ.
     fn cut_after_doublings(self, bits: i64, doublings: i64) -> Self {
         let error = Self::new(BigInt::zero(), self.error).cut(bits - doublings).error;
         Self {

@@ -137,7 +137,7 @@ pub enum MeasurementNoise {
     Constant(f64),
 }
 
-/// What the filters are told.
+/// The parameters that the filters assume.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CoordinateSetup {
     /// t, s.

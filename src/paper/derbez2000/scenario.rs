@@ -24,7 +24,7 @@ pub struct CoordinateScenario {
     pub choices: Choices,
     /// The paper's number of runs.
     pub runs: usize,
-    /// What the filters are told.
+    /// The parameters that the filters assume.
     pub setup: CoordinateSetup,
     /// The truth.
     pub path: TruePath,

@@ -282,7 +282,7 @@ pub fn table_1_reachable(s: &Specification, effort: Effort, progress: Progress) 
 }
 
 /// Whether a published figure, a mean over the paper's number of runs with the standard error that belongs to it, and one computed from
-/// so many runs may be one.
+/// `runs` runs may be equal.
 pub fn is_met(published: f64, computed: Estimate, runs: usize) -> bool {
     let share = (1.0 + runs as f64 / super::RUNS as f64).sqrt();
     (computed.distance_from(published) / share).abs() < DECISIVE

@@ -65,7 +65,7 @@ pub enum Bearings {
     Plain,
 }
 
-/// What the filters are told.
+/// The parameters that the filters assume.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RadarSetup {
     /// q of both modes, m²/s³ and m²/s⁵.

@@ -61,7 +61,7 @@ pub struct Divergences {
 }
 
 impl Divergences {
-    /// The sums over points of so many runs each.
+    /// The sums over points of a number of runs each.
     pub fn of<'a>(points: impl Iterator<Item = &'a SweepPoint>, runs: usize) -> Self {
         let mut tally = Self {
             runs: 0,

@@ -209,7 +209,7 @@ fn trajectory(choices: &Choices) -> Result<Trajectory, InvalidChoice> {
     Ok(Trajectory::new(manoeuvres, noise))
 }
 
-/// What the filters are told under the given choices, in scenario 1.
+/// The parameters that the filters assume under the given choices, in scenario 1.
 fn setup(choices: &Choices) -> Result<RadarSetup, InvalidChoice> {
     let chosen = |parameter| specification().chosen(choices, parameter);
     Ok(RadarSetup {

@@ -38,7 +38,7 @@ pub struct RadarScenario {
     pub first_measurement: FirstMeasurement,
     /// How the fit errors of x and y become one.
     pub fit_form: FitForm,
-    /// What the filters are told.
+    /// The parameters that the filters assume.
     pub setup: RadarSetup,
     /// The filters.
     pub contestants: Vec<RadarFilter>,

@@ -76,7 +76,7 @@ impl SweptParameter {
             .collect()
     }
 
-    /// What the filters are told with another value of this parameter.
+    /// The parameters that the filters assume, with another value of this one.
     fn set(self, setup: &RadarSetup, value: f64) -> RadarSetup {
         let mut setup = setup.clone();
         match self {
@@ -144,7 +144,7 @@ pub struct SweepPoint {
     pub plain_less_converted: Estimate,
 }
 
-/// The runs of a scenario with [`FILTERS`] in the place of its own filters.
+/// The runs of a scenario with [`FILTERS`] instead of its own filters.
 pub fn point(scenario: &RadarScenario, runs: usize, seed: u64, progress: Progress) -> SweepPoint {
     SweepPoint::of(&outcomes(scenario, runs, seed, progress), scenario.fit_form)
 }
