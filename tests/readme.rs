@@ -5,8 +5,10 @@
 //! `tests/adapters/run.sh`.
 
 use immaculate::oracle::case;
+use immaculate::oracle::judge::LIMIT;
 use immaculate::oracle::variant::{Kind, catalogue};
-use immaculate::paper::Paper;
+use immaculate::paper::sustika2015::sweep::settings;
+use immaculate::paper::{MOST_RUNS, Paper};
 use std::process::Command;
 
 const README: &str = include_str!("../README.md");
@@ -14,6 +16,10 @@ const CHECKING: &str = include_str!("../spec/checking.md");
 const FINDINGS: &str = include_str!("../spec/findings.md");
 const GUARANTEES: &str = include_str!("../spec/guarantees.md");
 const LIBRARY: &str = include_str!("../spec/library.md");
+const FORMATS: &str = include_str!("../spec/formats.md");
+const MAINTAINING: &str = include_str!("../spec/maintaining.md");
+const EXAMPLE: &str = include_str!("../spec/example.json");
+const NAMED: &str = include_str!("snapshots/oracle__what_each_level_of_answer_can_tell.snap");
 
 #[test]
 fn the_commands_of_the_pages_print_what_they_show() {
@@ -74,6 +80,94 @@ fn the_numbers_of_cases_and_variants_are_those_of_the_catalogues() {
         (README, planted),
     ] {
         assert!(words(page).contains(&sentence), "the page does not say: {sentence}");
+    }
+}
+
+/// Numbers in sentences: each is computed, or is that of a page or a snapshot that another test holds.
+#[test]
+fn the_other_numbers_of_the_pages_are_those_of_today() {
+    let words = |page: &str| page.split_whitespace().collect::<Vec<_>>().join(" ");
+    let named = |level: &str| -> String {
+        let line = NAMED.lines().find_map(|line| line.strip_prefix(level)).unwrap();
+        line.split(" named").next().unwrap().trim().to_owned()
+    };
+    let (posteriors, combined) = (named("posteriors:"), named("combined alone:"));
+    let judged_runs = |paper: Paper| paper.most_judged_runs();
+    let (derbez, liu, zhu) = (Paper::Derbez2000, Paper::Liu2017, Paper::Zhu2016);
+    assert_eq!(
+        judged_runs(derbez),
+        judged_runs(liu),
+        "the page has one number for both"
+    );
+    for (page, sentence) in [
+        (
+            README,
+            format!("an extended Kalman filter in {} lines", EXAMPLE.lines().count()),
+        ),
+        (
+            CHECKING,
+            format!(
+                "all are named if the program reports every value, {posteriors} if it reports only posteriors, and {combined} from the combined"
+            ),
+        ),
+        (CHECKING, format!("larger than {} times this noise", in_words(LIMIT))),
+        (FORMATS, format!("< {LIMIT} · noise")),
+        (
+            FORMATS,
+            format!(
+                "{} of derbez2000 and of liu2017, {}",
+                judged_runs(derbez),
+                in_thousands(judged_runs(zhu))
+            ),
+        ),
+        (FORMATS, format!("| `--runs` | {};", in_thousands(MOST_RUNS))),
+        (FINDINGS, format!("--sweep` runs {} settings", settings().len())),
+    ] {
+        assert!(words(page).contains(&sentence), "the page does not say: {sentence}");
+    }
+}
+
+fn in_words(limit: f64) -> &'static str {
+    assert_eq!(limit.to_bits(), 100.0_f64.to_bits(), "the page says it in words");
+    "a hundred"
+}
+
+fn in_thousands(number: usize) -> String {
+    format!("{} {:03}", number / 1000, number % 1000)
+}
+
+/// The mutants that `guarantees.md` counts are those of the table in `maintaining.md`.
+#[test]
+fn the_mutants_of_the_guarantees_are_those_of_the_table() {
+    let row = |room: &str| -> Vec<usize> {
+        let line = MAINTAINING
+            .lines()
+            .find(|line| line.starts_with(&format!("| {room} |")))
+            .unwrap();
+        line.split(" | ").filter_map(|cell| cell.trim().parse().ok()).collect()
+    };
+    // mutants, do not compile, not chosen, compile, run, caught, out of time, survived
+    let all = row("**all**");
+    let rooms =
+        ["gaussian", "matrix", "rule", "model", "filter", "imm", "statistics"].map(|room| row(&format!("`{room}`")));
+    let of_equations = |column: usize| rooms.iter().map(|row| row[column]).sum::<usize>();
+    let text = GUARANTEES.split_whitespace().collect::<Vec<_>>().join(" ");
+    for sentence in [
+        format!(
+            "finds {} such mutants, and {} of them compile",
+            in_thousands(all[0]),
+            in_thousands(all[3])
+        ),
+        format!("All {} in the folders of the equations", in_thousands(of_equations(4))),
+        format!("were run, and {} turned a test red.", in_thousands(of_equations(5))),
+        format!(
+            "Elsewhere {} of {} were run, and {} turned",
+            in_thousands(all[4] - of_equations(4)),
+            in_thousands(all[3] - of_equations(3)),
+            in_thousands(all[5] - of_equations(5))
+        ),
+    ] {
+        assert!(text.contains(&sentence), "the page does not say: {sentence}");
     }
 }
 
