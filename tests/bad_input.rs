@@ -10,7 +10,7 @@ use immaculate::filter::fixed_gain::FixedGain;
 use immaculate::filter::{Filter, Transform, Update};
 use immaculate::gaussian::Gaussian;
 use immaculate::imm::state_conversion::{Reader, StateConversion, StateConversions};
-use immaculate::imm::{Cause, Equations, Imm, Initial, Interaction, InvalidProblem, Problem, Quantity};
+use immaculate::imm::{Cause, Equations, Imm, Initial, Interaction, InvalidProblem, PlainImm, Problem, Quantity};
 use immaculate::matrix::{NotPositiveDefinite, cholesky};
 use immaculate::model::angle::wrap;
 use immaculate::model::function::Function;
@@ -1526,6 +1526,20 @@ fn a_function_without_a_slope_where_it_is_linearised_is_named() {
 }
 
 #[test]
+fn a_plain_filter_has_as_many_modes_as_it_is_built_for() {
+    let scene = linear_scene();
+    let error = PlainImm::<f64, U4, U2, 2>::new(scene.problem.clone(), &scene.initial).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "`modes` has 3 entries where the filter is built for 2; give it as many modes as `MODES` says"
+    );
+    let mut wrong = scene.problem.clone();
+    wrong.chain[0][0] = 0.5;
+    let error = PlainImm::<f64, U4, U2, 3>::new(wrong.clone(), &scene.initial).unwrap_err();
+    assert_eq!(error, Imm::new(wrong, &scene.initial).unwrap_err());
+}
+
+#[test]
 fn an_estimate_that_overflows_is_an_error_even_without_a_detection() {
     // Each prediction multiplies the covariances by 10²⁰⁰: the second one is beyond the doubles.
     let mut scene = linear_scene();
@@ -1961,6 +1975,7 @@ fn problem_test(error: &InvalidProblem) -> &'static str {
         InvalidProblem::NotLinear { .. } => "the_kalman_filter_has_linear_measurements_only",
         InvalidProblem::NothingToDrawFrom => "a_filter_with_a_given_gain_draws_no_points",
         InvalidProblem::SomeGiven => "gains_are_given_to_all_modes_or_to_none",
+        InvalidProblem::OtherModes { .. } => "a_plain_filter_has_as_many_modes_as_it_is_built_for",
         InvalidProblem::OtherKind => "a_filter_does_not_go_on_with_gains_of_the_other_kind",
         InvalidProblem::CovarianceGiven { .. } => "a_filter_with_fixed_gains_has_no_covariance",
         InvalidProblem::RuleLengths { .. } => "a_rule_has_one_weight_a_point",

@@ -86,7 +86,7 @@ fn two_steps_of_a_half_are_one_step() {
             [0.25, 1.5, 1.75].map(|t| transition_over(&on(RATES, Enclosure::exact), &Enclosure::exact(t)));
         assert_equal(&product(&a, &b), &both);
         assert_equal(&product(&b, &a), &both);
-        // The Euler step is none of them.
+        // The Euler step is not the exponential.
         let euler = Enclosure::integer(1) + Enclosure::exact(RATES[0][0] * 0.25);
         assert!(a[0][0] > euler);
     });

@@ -1,6 +1,6 @@
 //! Goal: the cycle without a record is the recorded one, to the last bit.
 //!
-//! Method: whole runs in doubles through [`PlainImm`] and [`Imm`], step by step, for every kind of filter, of sensor and of interaction, with
+//! Method: whole runs in doubles through [`PlainImm`] and [`Imm`](immaculate::imm::Imm), step by step, for every kind of filter, of sensor and of interaction, with
 //! steps without a detection; the estimates of the modes, their probabilities and the combined estimate have equal bits, and a step that
 //! cannot be computed fails with the same sentence. Kind of evidence: property; nothing is rounded differently, so that there is no
 //! tolerance.
@@ -10,7 +10,7 @@ mod common;
 use common::{Scene, all_scenes, bits, bits_of, converted_scene, fixed_gain_scene, linear_scene, polar_scene};
 use immaculate::filter::Filter;
 use immaculate::imm::state_conversion::{Reader, StateConversion, StateConversions};
-use immaculate::imm::{Imm, Interaction, InvalidProblem, PlainImm};
+use immaculate::imm::{Interaction, PlainImm};
 use immaculate::model::Conversion;
 use immaculate::model::motion::Motion;
 use immaculate::number::Rational;
@@ -55,6 +55,10 @@ fn scenes() -> Vec<(String, Scene)> {
     let (linear, polar) = (linear_scene, || polar_scene("cubature-3"));
     let mut unmixed = fixed_gain_scene();
     unmixed.problem.interaction = Interaction::Unmixed;
+    let mut first_order = polar();
+    first_order.problem.interaction = Interaction::Gpb1;
+    let mut bank = linear();
+    bank.problem.interaction = Interaction::Unmixed;
     let mut angles = linear();
     angles.problem.angles = vec![3];
     let mut angles_of_points = polar();
@@ -68,6 +72,8 @@ fn scenes() -> Vec<(String, Scene)> {
     scenes.extend([
         ("fixed gains".into(), fixed_gain_scene()),
         ("fixed gains, unmixed".into(), unmixed),
+        ("first order".into(), first_order),
+        ("unmixed".into(), bank),
         (
             "converted".into(),
             converted_scene(Conversion::Standard, [100.0, -50.0]),
@@ -187,18 +193,4 @@ fn a_step_that_fails_says_the_same_and_leaves_the_filter_as_it_is() {
         sentences.push(failure);
     }
     insta::assert_snapshot!("failures", sentences.join("\n"));
-}
-
-#[test]
-fn a_plain_filter_refuses_a_problem_with_another_number_of_modes() {
-    let scene = linear_scene();
-    let error = PlainImm::<f64, U4, U2, 2>::new(scene.problem.clone(), &scene.initial).expect_err("it has three modes");
-    assert_eq!(error, InvalidProblem::OtherModes { found: 3, expected: 2 });
-    let mut wrong = scene.problem.clone();
-    wrong.chain[0][0] = 0.5;
-    let expected = Imm::new(wrong.clone(), &scene.initial).expect_err("a row does not sum to one");
-    assert_eq!(
-        Plain::new(wrong, &scene.initial).expect_err("a row does not sum to one"),
-        expected
-    );
 }

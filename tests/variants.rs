@@ -593,7 +593,7 @@ fn scenes() -> Vec<Scene> {
     faint.measurements[0] = Some(dvector![132.0, -91.2]);
     let mut drawing = linear(2);
     drawing.problem.filters = vec![points("simplex-5")];
-    let scenes = [
+    let scenes = vec![
         ("linear", linear(3)),
         ("one mode", linear(1)),
         (OUTLIERS[0], outlier),
@@ -621,7 +621,7 @@ fn scenes() -> Vec<Scene> {
         ("heading with points", heading(points(RULE))),
         ("scalar", generic(1, 2, Sensor::Linear(dmatrix![0.8]), Filter::kalman())),
     ];
-    scenes.map(|(name, setup)| Scene { name, setup }).into()
+    scenes.into_iter().map(|(name, setup)| Scene { name, setup }).collect()
 }
 
 /// A filter with the points of a rule, for four entries of the state.

@@ -1,6 +1,6 @@
 //! `immaculate stability --problem FILE`: are the fixed-gain filters of a problem file stable together?
 //!
-//! After this file the reader knows which problems have an answer: those whose filters do the same linear arithmetic at every step.
+//! A problem has an answer if its filters do the same linear arithmetic at every step.
 
 use super::{Done, Refusal, json_text, read_file};
 use immaculate::filter::Update;

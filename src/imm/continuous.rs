@@ -1,7 +1,6 @@
 //! Markov chains in continuous time: the transition matrix of a step of any length, from rates or from mean sojourn times.
 //!
-//! After this file the reader knows why a chain that is written down per second need not be written down again for every step length, and
-//! how e^(G T) is computed without losing a digit.
+//! A chain that is written down per second need not be written down again for every step length. e^(G T) is computed without losing a digit.
 //!
 //! ```text
 //! τᵢ, rᵢⱼ ─ rates_of_sojourns ─▶ G ─ transition_over(T) ─▶ P = e^(G T), the chain of a step of length T
@@ -148,7 +147,7 @@ fn exponential<T: Real>(step: &[Vec<T>], size: &T) -> Vec<Vec<T>> {
     summing_to_one(chain)
 }
 
-/// K: so many terms of e^a, a ≤ ½, leave less than 2⁻ᵇ⁻¹⁶ of its b bits: the factors 2k of 2ᴷ K! have that many bits together.
+/// K, the number of terms of e^a, a ≤ ½, that leaves less than 2⁻ᵇ⁻¹⁶ of its b bits: the factors 2k of 2ᴷ K! have that many bits together.
 fn terms<T: Real>() -> usize {
     let (mut bits, mut k) = (0, 0_u32);
     while bits < T::bits() + 16 {

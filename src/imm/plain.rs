@@ -1,4 +1,4 @@
-//! The cycle without a record: the same equations in the same order, in local variables, for whoever wants the estimates and nothing else.
+//! The cycle without a record: the same equations in the same order, in local variables, for programs that need the estimates alone.
 //!
 //! [`Imm`](super::Imm) writes every value of a step into its record, where observers, variants and the judge find it, and moving some thirty
 //! lists costs more than the arithmetic of a Kalman filter. [`PlainImm`] keeps the estimates of the modes, their probabilities, and the

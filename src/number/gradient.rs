@@ -49,7 +49,7 @@ impl<T: Field> Gradient<T> {
         Self { value, slopes }
     }
 
-    /// The variable of one of so many directions, which count from 0.
+    /// The variable of one direction, counted from 0, of a number of directions.
     pub fn variable(value: T, direction: usize, directions: usize) -> Self {
         let unit = |k| if k == direction { T::one() } else { T::zero() };
         Self {

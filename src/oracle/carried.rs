@@ -75,7 +75,7 @@ struct Runner<T: Real> {
     filter: Imm<T, Dyn, Dyn>,
 }
 
-/// Runs a problem with so many bits; `seen` is given the numbers of each step, counted from 1, and may stop the run.
+/// Runs a problem with a number of bits; `seen` is given the numbers of each step, counted from 1, and may stop the run.
 ///
 /// # Errors
 ///
@@ -257,7 +257,7 @@ impl<T: Real> Runner<T> {
         }
     }
 
-    /// Runs the step after so many, from what the step before passed on; from the initial estimate where that is nothing.
+    /// Runs the step after the first `index`, from what the step before passed on; from the initial estimate where that is nothing.
     fn advance(
         &mut self,
         index: usize,

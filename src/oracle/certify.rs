@@ -115,7 +115,7 @@ pub fn certify_from(problem: &ProblemFile, first_bits: u32) -> Result<Certified,
 /// The bits with which enclosures alone go as far as they do, for runs that cannot be carried: some ten seconds.
 const BITS_OF_A_PREFIX: u32 = 2048;
 
-/// So many steps of a longer run are certified where nobody asked for all: some minutes.
+/// The steps of a longer run that are certified where nobody asked for all: some minutes.
 const MOST_STEPS_CARRIED: usize = 10_000;
 
 /// The expected trace of a problem of any length: certified for the steps that are returned, in doubles for those after them.
@@ -241,7 +241,7 @@ fn nearest(problem: &ProblemFile, values: &Table<Vec<Enclosure>>) -> Result<(Tra
     Ok((trace, digits(widest)))
 }
 
-/// Sets the doubles nearest to enclosures in a trace, so many steps later than they stand in their table; the width of the widest
+/// Sets the doubles nearest to enclosures in a trace, a number of steps later than they stand in their table; the width of the widest
 /// enclosure relative to its scale.
 pub(super) fn nearest_into(
     trace: &mut Trace,
@@ -391,7 +391,7 @@ pub fn certified_decimals(problem: &ProblemFile, digits: u32) -> Result<(Table<V
     }
 }
 
-/// Sets certified decimals of enclosures in a table, so many steps later than they stand in their own.
+/// Sets certified decimals of enclosures in a table, a number of steps later than they stand in their own.
 fn decimals_into(
     decimals: &mut Table<Vec<String>>,
     problem: &ProblemFile,

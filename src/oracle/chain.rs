@@ -1,6 +1,6 @@
 //! The Markov chain of a problem file: one matrix for all steps, or rates from which the length of each step makes one.
 //!
-//! After this file the reader knows what is refused of rates and sojourn times, and how they become the chain of a step.
+//! Rates and sojourn times are checked here, and become the chain of a step.
 
 use super::invalid::{Class, Invalid};
 use super::problem::{ProblemFile, Rows};

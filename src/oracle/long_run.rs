@@ -9,7 +9,7 @@ use super::invalid::Invalid;
 use super::problem::ProblemFile;
 use super::trace::Trace;
 
-/// So many bits are added where a value of a long run stays undecided.
+/// The bits that are added where a value of a long run stays undecided.
 const MORE_BITS: u32 = 64;
 
 /// The bits of the last attempt to carry a long run: the set of its errors is in doubles, which end at 2⁻¹⁰⁷⁴.
@@ -18,7 +18,7 @@ pub(super) const MOST_BITS_CARRIED: u32 = 832;
 /// Runs of more steps are carried, [`super::carried`]. The published ones are not longer.
 pub(super) const LONGEST_PLAIN: usize = 100;
 
-/// Whether a problem has so many steps that enclosures alone would need thousands of bits.
+/// Whether a problem has too many steps for enclosures alone, which would need thousands of bits.
 pub(super) fn is_long(problem: &ProblemFile) -> bool {
     problem.measurements.len() > LONGEST_PLAIN
 }

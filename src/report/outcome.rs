@@ -1,6 +1,4 @@
 //! What became of published figures, in a sentence.
-//!
-//! After this file the reader knows what is said of the tables of one paper, and of those of all.
 
 use super::reproduction::SideBySide;
 use super::wrapped;

@@ -1,6 +1,6 @@
 //! The joint stability of the fixed-gain filters of a problem file, for people and programs.
 //!
-//! After this file the reader knows what `immaculate stability --problem` prints: each filter by itself, then all together with the proof.
+//! `immaculate stability --problem` prints each filter by itself, then all together with the proof.
 
 use super::stability::{Between, between, verdict_word};
 use super::stability_proof::{Proof, word};
@@ -111,7 +111,7 @@ fn alone(word: &str) -> &'static str {
         "unstable" => {
             "A filter goes on from its own estimate, and its (I − KH)F has an eigenvalue on the unit circle or outside."
         }
-        _ => "A spectral radius is so near one that it cannot be told from it.",
+        _ => "A spectral radius is so near one that the two cannot be distinguished.",
     }
 }
 

@@ -1,6 +1,6 @@
 //! A proof of joint stability or of growth, written so that it can be followed with pencil and paper.
 //!
-//! After this file the reader knows what is printed of a proof: the matrices, the forms, each inequality with its pivots; or the product,
+//! A proof is printed as the matrices, the forms, each inequality with its pivots; or the product,
 //! its characteristic polynomial and the sign that shows a root beyond one; and the bounds of the joint spectral radius.
 
 use super::wrapped;

@@ -1,7 +1,7 @@
 //! A proof of joint stability in numbers that can be followed with pencil and paper.
 //!
-//! After this file the reader knows how a proof about matrices that are not rational, or have many digits, becomes one about fractions:
-//! each matrix is a short decimal one, C, and a bound of the distance, and the inequalities get the slack that the distance may cost.
+//! A proof about matrices that are not rational, or have many digits, becomes one about fractions: each matrix is replaced by a short
+//! decimal one, C, and a bound of the distance, and the inequalities get the slack that the distance may cost.
 
 use super::certificate::{Edge, Quadratics};
 use super::closed_loops::{BITS, ClosedLoops, Entries};
@@ -111,7 +111,7 @@ fn positive_pivots(matrix: &DMatrix<Rational>) -> Option<Vec<Rational>> {
     pivots.iter().all(Rational::is_positive).then_some(pivots)
 }
 
-/// The decimals with so many digits after the point that are nearest to the entries; none if one is farther than a distance.
+/// The decimals with `digits` digits after the point that are nearest to the entries; none if one is farther than a distance.
 fn near<N: Dim>(matrix: &OMatrix<Enclosure, N, N>, digits: u32, distance: &Rational) -> Option<DMatrix<Rational>>
 where
     Shapes: Holds<N>,

@@ -1,6 +1,6 @@
 //! The matrices (I − KH)F of filters that exchange estimates, and how their joint stability is decided.
 //!
-//! After this file the reader knows how the question is answered, from cheap to dear: short products that grow, a common quadratic form,
+//! The question is answered from cheap to expensive: short products that grow, a common quadratic form,
 //! forms that remember the last letters, longer products; and how the joint spectral radius is bounded from both sides. Whatever is
 //! answered was checked in exact or enclosing arithmetic.
 

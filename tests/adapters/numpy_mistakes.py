@@ -28,14 +28,14 @@ class TransitionTransposedInMixing:
 
 
 class ChainByAnEulerStep:
-    """I + G T: whoever wrote it knew no matrix exponential."""
+    """I + G T instead of the matrix exponential."""
 
     def chain_over(self, rates, interval):
         return np.eye(len(rates)) + rates * interval
 
 
 class SojournTimesAsRates:
-    """tau in the place of 1/tau."""
+    """tau instead of 1/tau."""
 
     def rates_of(self, sojourn_times, jumps):
         return (jumps - np.eye(len(jumps))) * sojourn_times[:, None]

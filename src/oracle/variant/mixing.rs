@@ -29,13 +29,13 @@ fn of_chain<T: Real>(id: &str, setup: &mut Setup<T>) -> bool {
     match id {
         // cⱼ = Σᵢ pⱼᵢ μᵢ, and the mixing probabilities by the same matrix
         "transition-transposed" => setup.problem.chain = transposed(&setup.problem.chain),
-        // I + G T in the place of e^(G T)
+        // I + G T instead of e^(G T)
         "chain-by-an-euler-step" => {
             if let Some(ChainOfRates { rates, interval, .. }) = setup.rates.get(&0) {
                 setup.problem.chain = euler_step(rates, interval);
             }
         }
-        // the rate τᵢ in the place of 1/τᵢ
+        // the rate τᵢ instead of 1/τᵢ
         "sojourn-times-as-rates" => {
             if let Some(ChainOfRates {
                 sojourns: Some((times, jumps)),

@@ -275,7 +275,7 @@ pub fn distances_of_two_copies(steps: u32) -> Result<Vec<f64>, NotSimulated> {
     })
 }
 
-/// In how many of so many runs the copies of [`distances_of_two_copies`] are more than a millimetre apart after 300 and after 1000 steps,
+/// In how many of `runs` runs the copies of [`distances_of_two_copies`] are more than a millimetre apart after 300 and after 1000 steps,
 /// if what both see has Gaussian noise of a deviation, m; in doubles.
 ///
 /// Why there are fewer the more noise there is: the path that the copies go round is an unstable one. Noise takes them off it, and then
