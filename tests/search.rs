@@ -197,7 +197,8 @@ const MISTAKES: [(&str, Quantity, [usize; 4]); 12] = [
     ("innovation-not-wrapped", Quantity::Innovation, [1, 1, 2, 1]),
     ("covariance-not-updated", Quantity::UpdatedCovariance, [1, 1, 1, 1]),
     ("determinant-omitted", Quantity::LogLikelihood, [1, 1, 1, 1]),
-    ("likelihood-floor-1e-300", Quantity::ModeProbabilities, [1, 2, 1, 1]),
+    // The first that shows it converts range and bearing, of which there are two.
+    ("likelihood-floor-1e-300", Quantity::ModeProbabilities, [1, 2, 2, 2]),
     ("probabilities-not-advanced", Quantity::ModeProbabilities, [1, 2, 1, 1]),
     // A named model keeps its components: those of a turn.
     ("motion-of-the-first-step", Quantity::PredictedMean, [2, 1, 5, 1]),

@@ -1,8 +1,8 @@
 //! Which equation each kind of filter takes for a value of one mode.
 //!
-//! Here, and nowhere else, the cycle asks what kind a filter is. Each function is one value: it takes what the value is computed from, looks
-//! at the filter of mode j, and calls the equation of its kind. The [table](super::equations) calls them with what stands in the record, the
-//! [plain cycle](super::plain) with what it has just computed, so that both compute the same bits.
+//! Here, and nowhere else, the cycle asks what kind a filter is. Each function is one value: it takes what the value is computed from,
+//! looks at the filter of mode j, and calls the equation of its kind. The [table](super::equations) calls them with what stands in the
+//! record, the [plain cycle](super::plain) with what it has just computed, so that both compute the same bits.
 //!
 //! They are inlined, since a compiler that sees them all together asks for the kind once: a plain step of three Kalman filters then has 5970
 //! instructions in place of 7390.
