@@ -4,8 +4,8 @@
 //! looks at the filter of mode j, and calls the equation of its kind. The [table](super::equations) calls them with what stands in the
 //! record, the [plain cycle](super::plain) with what it has just computed, so that both compute the same bits.
 //!
-//! They are inlined, since a compiler that sees them all together asks for the kind once: a plain step of three Kalman filters then has 5970
-//! instructions in place of 7390.
+//! They are inlined, since a compiler that sees them all together asks for the kind once: a plain step of three Kalman filters then has
+//! 5970 instructions instead of 7390.
 
 use super::Problem;
 use super::angles::{points_near, wrapped};

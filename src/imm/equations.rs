@@ -2,7 +2,7 @@
 //!
 //! An entry says which equation gives a field of [`Step`] from which other values. It sees the problem, the step before, the step so far
 //! and its mode; the wiring in [`super::cycle`] runs the entries in order. What depends on the kind of a mode's filter is asked in
-//! [`by_kind`]. The filter proper is [`Equations::standard`]; a *variant* is this table with some entries exchanged:
+//! `by_kind.rs`. The filter proper is [`Equations::standard`]; a *variant* is this table with some entries exchanged:
 //!
 //! ```
 //! use immaculate::imm::Equations;
