@@ -1,9 +1,9 @@
 //! Goal: the cycle without a record is the recorded one, to the last bit.
 //!
-//! Method: whole runs in doubles through [`PlainImm`] and [`Imm`](immaculate::imm::Imm), step by step, for every kind of filter, of sensor and of interaction, with
-//! steps without a detection; the estimates of the modes, their probabilities and the combined estimate have equal bits, and a step that
-//! cannot be computed fails with the same sentence. Kind of evidence: property; nothing is rounded differently, so that there is no
-//! tolerance.
+//! Method: whole runs in doubles through [`PlainImm`] and [`Imm`](immaculate::imm::Imm), step by step, for every kind of filter, sensor
+//! and interaction, with steps without a detection. The estimates of the modes, their probabilities and the combined estimate have equal
+//! bits, and a step that cannot be computed fails with the same sentence. Kind of evidence: property. Nothing is rounded differently, so
+//! there is no tolerance.
 
 mod common;
 

@@ -1,6 +1,7 @@
 //! Markov chains in continuous time: the transition matrix of a step of any length, from rates or from mean sojourn times.
 //!
-//! A chain that is written down per second need not be written down again for every step length. e^(G T) is computed without losing a digit.
+//! A chain that is written down per second need not be written down again for every step length. e^(G T) is computed without losing a
+//! digit.
 //!
 //! ```text
 //! τᵢ, rᵢⱼ ─ rates_of_sojourns ─▶ G ─ transition_over(T) ─▶ P = e^(G T), the chain of a step of length T

@@ -20,6 +20,8 @@ use super::probability;
 use super::state_conversion::Reader;
 use super::{Problem, Step};
 use crate::filter::update;
+#[cfg(doc)]
+use crate::filter::{converted, cubature, extended, iterated, kalman};
 use crate::gaussian::{log_density, mixture_covariance, mixture_mean};
 use crate::matrix::{Holds, NotPositiveDefinite, Shapes, check_positive_definite, ldl, quadratic_form};
 use crate::number::{Field, Real};
@@ -56,27 +58,27 @@ where
     pub mixed_mean: Equation<T, N, M, OVector<T, N>>,
     /// P⁰ʲ, [`mixture_covariance`].
     pub mixed_covariance: Equation<T, N, M, OMatrix<T, N, N>>,
-    /// The points of the mixed estimate, [`cubature::points`](crate::filter::cubature::points); none for a filter that draws none.
+    /// The points of the mixed estimate, [`cubature::points`]; none for a filter that draws none.
     pub mixed_points: Equation<T, N, M, Factored<Points<T, N>>>,
-    /// The propagated points, [`cubature::propagated_point`](crate::filter::cubature::propagated_point).
+    /// The propagated points, [`cubature::propagated_point`].
     pub propagated_points: Equation<T, N, M, Points<T, N>>,
-    /// Predicted mean, [`kalman::predicted_mean`](crate::filter::kalman::predicted_mean) or [`cubature::weighted_mean`](crate::filter::cubature::weighted_mean).
+    /// Predicted mean, [`kalman::predicted_mean`] or [`cubature::weighted_mean`].
     pub predicted_mean: Equation<T, N, M, OVector<T, N>>,
-    /// F, [`extended::motion_jacobian`](crate::filter::extended::motion_jacobian); none for a filter that does not linearise the motion.
+    /// F, [`extended::motion_jacobian`]; none for a filter that does not linearise the motion.
     pub motion_jacobian: Equation<T, N, M, Option<OMatrix<T, N, N>>>,
-    /// Predicted covariance, [`kalman::predicted_covariance`](crate::filter::kalman::predicted_covariance) or [`cubature::weighted_covariance`](crate::filter::cubature::weighted_covariance).
+    /// Predicted covariance, [`kalman::predicted_covariance`] or [`cubature::weighted_covariance`].
     pub predicted_covariance: Equation<T, N, M, OMatrix<T, N, N>>,
     /// Mean of the combined prediction, [`mixture_mean`] under the predicted mode probabilities.
     pub combined_prediction_mean: Equation<T, N, M, OVector<T, N>>,
     /// Covariance of the combined prediction, [`mixture_covariance`].
     pub combined_prediction_covariance: Equation<T, N, M, OMatrix<T, N, N>>,
-    /// The measurement as a position, [`converted::converted_measurement`](crate::filter::converted::converted_measurement); none where no filter converts.
+    /// The measurement as a position, [`converted::converted_measurement`]; none where no filter converts.
     pub converted_measurement: OfMeasurement<T, N, M, Option<OVector<T, M>>>,
-    /// R^c, [`converted::converted_covariance`](crate::filter::converted::converted_covariance); none where no filter converts.
+    /// R^c, [`converted::converted_covariance`]; none where no filter converts.
     pub converted_covariance: OfMeasurement<T, N, M, Option<OMatrix<T, M, M>>>,
-    /// x_{N−1}, [`iterated::linearisation_point`](crate::filter::iterated::linearisation_point); none for a filter that does not iterate.
+    /// x_{N−1}, [`iterated::linearisation_point`]; none for a filter that does not iterate.
     pub linearisation_point: OfMeasurement<T, N, M, Factored<Iterate<T, N>>>,
-    /// The points of the prediction, [`cubature::points`](crate::filter::cubature::points); none for a filter that draws none.
+    /// The points of the prediction, [`cubature::points`]; none for a filter that draws none.
     pub predicted_points: Equation<T, N, M, Factored<Points<T, N>>>,
     /// The measurements of these points, [`Sensor::of`](crate::model::Sensor::of).
     pub measured_points: Equation<T, N, M, Points<T, M>>,
@@ -84,12 +86,11 @@ where
     pub predicted_measurement: Equation<T, N, M, OVector<T, M>>,
     /// ν, [`Sensor::difference`](crate::model::Sensor::difference).
     pub innovation: OfMeasurement<T, N, M, OVector<T, M>>,
-    /// H, [`extended::measurement_jacobian`](crate::filter::extended::measurement_jacobian), of the mode's own state; none for a filter that
-    /// does not linearise the measurement.
+    /// H, [`extended::measurement_jacobian`], of the mode's own state; none for a filter that does not linearise the measurement.
     pub measurement_jacobian: Equation<T, N, M, Option<OMatrix<T, M, N>>>,
-    /// S, [`kalman::innovation_covariance`](crate::filter::kalman::innovation_covariance) or [`cubature::innovation_covariance`](crate::filter::cubature::innovation_covariance).
+    /// S, [`kalman::innovation_covariance`] or [`cubature::innovation_covariance`].
     pub innovation_covariance: Equation<T, N, M, OMatrix<T, M, M>>,
-    /// C, [`kalman::cross_covariance`](crate::filter::kalman::cross_covariance) or [`cubature::cross_covariance`](crate::filter::cubature::cross_covariance).
+    /// C, [`kalman::cross_covariance`] or [`cubature::cross_covariance`].
     pub cross_covariance: Equation<T, N, M, OMatrix<T, N, M>>,
     /// W, [`update::gain`].
     pub gain: Equation<T, N, M, Factored<OMatrix<T, N, M>>>,

@@ -1,6 +1,6 @@
 //! The cycle without a record: the same equations in the same order, in local variables, for programs that need the estimates alone.
 //!
-//! [`Imm`](super::Imm) writes every value of a step into its record, where observers, variants and the judge find it, and moving some thirty
+//! [`Imm`](super::Imm) writes every value of a step into its record, where observers, variants and the judge find it, and moving those
 //! lists costs more than the arithmetic of a Kalman filter. [`PlainImm`] keeps the estimates of the modes, their probabilities, and the
 //! combined estimate. It has no combined prediction, no normalised squares and no variants; what it has is the same to the last bit.
 //!

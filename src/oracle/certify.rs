@@ -2,7 +2,8 @@
 //!
 //! The equations are evaluated in [`Enclosure`] on the exact inputs of the file. If the enclosure of every number is so narrow that one
 //! double is the nearest to all its points, these doubles are the trace. If not, or if a comparison cannot be decided, the run is repeated
-//! with twice the bits. Long runs would need thousands of bits; they are carried from step to step instead: [`ellipsoid`](super::ellipsoid).
+//! with twice the bits. Long runs would need thousands of bits; they are carried from step to step instead, see
+//! [`ellipsoid`](super::ellipsoid).
 
 use super::carried::Numbers;
 use super::invalid::{Class, Invalid};

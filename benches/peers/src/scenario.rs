@@ -1,4 +1,5 @@
-//! The problem that all are given: constant velocity and two turns, n = 4, m = 2, and a target that flies straight, turns, and flies straight.
+//! The problem that all are given: constant velocity and two turns, n = 4, m = 2, and a target that flies straight, turns, and flies
+//! straight again.
 
 use immaculate::model::motion::{constant_velocity, coordinated_turn, integrated_noise};
 use nalgebra::{Matrix2, Matrix2x4, Matrix4, Vector2, Vector4, matrix, vector};
