@@ -186,6 +186,8 @@ class Problem(Models):
         """
         file = self.to_dict()
         file.update(id=f"{self.id}.mode-{j}", modes=[file["modes"][j]], transition=[[1.0]])
+        for key in ("rates", "sojourn_times", "jumps", "interaction"):  # of several modes
+            file.pop(key, None)
         file["initial"] = {"mode_probabilities": [1.0], "modes": [file["initial"]["modes"][j]]}
         own = [one for one in file.pop("conversions", []) if one["from"] == file["modes"][0]["name"] and "to" not in one]
         file.update({"conversions": own} if own else {})  # the combined estimates of one mode are its own, in the common state
