@@ -6,6 +6,7 @@
 use super::certificate::{Edge, Quadratics};
 use super::closed_loops::{BITS, ClosedLoops, Entries};
 use super::pair::product;
+use super::search::of_any_side;
 use super::polynomial::{MatrixRows, characteristic_polynomial, rows_of};
 use crate::matrix::{Holds, Shapes, ldl};
 use crate::number::{Enclosure, Field, Rational};
@@ -221,11 +222,4 @@ impl<T: Field + PartialOrd> Growth<T> {
             beyond,
         }
     }
-}
-
-fn of_any_side<N: Dim>(matrix: &OMatrix<Rational, N, N>) -> DMatrix<Rational>
-where
-    Shapes: Holds<N>,
-{
-    DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| matrix[(i, j)].clone())
 }

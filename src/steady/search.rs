@@ -163,11 +163,12 @@ where
     )
 }
 
-fn of_any_side<N: Dim>(matrix: &OMatrix<f64, N, N>) -> DMatrix<f64>
+/// The same matrix, its side a number.
+pub(super) fn of_any_side<T: Field, N: Dim>(matrix: &OMatrix<T, N, N>) -> DMatrix<T>
 where
     Shapes: Holds<N>,
 {
-    DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| matrix[(i, j)])
+    DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| matrix[(i, j)].clone())
 }
 
 /// Coordinates in which each matrix by itself shrinks vectors, as far as one change of coordinates can have it: the root of the sum of
