@@ -8,12 +8,12 @@
 //!                                                                    └─ no detection ─▶ the prediction stays ──────┘
 //! ```
 
-use super::failure::{Cause, Failure, check_measurement, check_slopes, failure, not_definite};
+use super::failure::{Cause, Failure, check_combined, check_measurement, check_slopes, failure, not_definite};
 use super::observer::Observer;
 use super::record::Quantity;
 use super::update::update;
 use super::{Equations, Initial, InvalidProblem, Problem, Step};
-use crate::matrix::{Holds, Shapes, all_finite, is_finite};
+use crate::matrix::{Holds, Shapes, is_finite};
 use crate::number::{Field, Real};
 use nalgebra::{Dim, OVector};
 
@@ -275,17 +275,7 @@ where
             self.go_without_detection(observer);
         }
         self.combine(observer);
-        let combined = &self.now.combined;
-        if all_finite(&combined.mean) && (!self.problem.has_covariances() || all_finite(&combined.covariance)) {
-            return Ok(());
-        }
-        Err(failure(
-            &self.problem,
-            self.now.step,
-            None,
-            "combined",
-            Cause::EstimateNotFinite,
-        ))
+        check_combined(&self.problem, self.now.step, &self.now.combined)
     }
 
     /// Mode probabilities along the chain, and the estimates mixed accordingly.

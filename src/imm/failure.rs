@@ -2,6 +2,7 @@
 
 use super::Problem;
 use super::record::Quantity;
+use crate::gaussian::Gaussian;
 use crate::matrix::{Holds, NotPositiveDefinite, Shapes, all_finite};
 use crate::model::PolarComponent;
 use crate::number::{Field, Real};
@@ -140,6 +141,25 @@ where
         }
     }
     Ok(())
+}
+
+/// The combined estimate is finite: its mean, and its covariance where filters have one.
+///
+/// # Errors
+///
+/// [`Failure`] where the problem's numbers are beyond the number system.
+pub(super) fn check_combined<T: Real, N: Dim, M: Dim>(
+    problem: &Problem<T, N, M>,
+    step: usize,
+    combined: &Gaussian<T, N>,
+) -> Result<(), Failure>
+where
+    Shapes: Holds<N, M>,
+{
+    if all_finite(&combined.mean) && (!problem.has_covariances() || all_finite(&combined.covariance)) {
+        return Ok(());
+    }
+    Err(failure(problem, step, None, "combined", Cause::EstimateNotFinite))
 }
 
 /// The Jacobian of mode j, if its filter has one, is finite.

@@ -10,13 +10,13 @@
 
 use super::angles::{estimates_near, estimates_near_first, wrapped};
 use super::by_kind;
-use super::failure::{Cause, Failure, check_measurement, check_slopes, failure, not_definite};
+use super::failure::{Cause, Failure, check_combined, check_measurement, check_slopes, failure, not_definite};
 use super::record::Quantity;
 use super::state_conversion::Reader;
 use super::{Initial, InvalidProblem, Problem, probability};
 use crate::filter::update;
 use crate::gaussian::{Gaussian, log_density, mixture_covariance, mixture_mean};
-use crate::matrix::{Holds, Shapes, all_finite, check_positive_definite, is_finite, ldl};
+use crate::matrix::{Holds, Shapes, check_positive_definite, is_finite, ldl};
 use crate::number::Real;
 use nalgebra::{Dim, OMatrix, OVector};
 use std::array::from_fn;
@@ -142,9 +142,7 @@ where
             None => go_without_detection(problem, predicted_probabilities, now),
         }
         now.combined = mixture(problem, Reader::Common, &now.mode_probabilities, &now.modes);
-        if !all_finite(&now.combined.mean) || problem.has_covariances() && !all_finite(&now.combined.covariance) {
-            return Err(failure(problem, now.step, None, "combined", Cause::EstimateNotFinite));
-        }
+        check_combined(problem, now.step, &now.combined)?;
         std::mem::swap(&mut self.now, &mut self.next);
         Ok(&self.now.combined)
     }
