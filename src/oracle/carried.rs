@@ -228,9 +228,7 @@ fn passing_on<T: Real>(mut setup: Setup<T>) -> Setup<T> {
         },
         combined_mean: |problem, _, _, _| DVector::from_element(problem.n().0, T::zero()),
         combined_covariance: |problem, _, _, _| DMatrix::from_element(problem.n().0, problem.n().0, T::zero()),
-        nis: |_, _, _, _| None,
-        nees: |_, _, _, _| None,
-        ..setup.equations
+        ..setup.equations.without_consistency()
     };
     setup
 }
