@@ -5,10 +5,12 @@
 #![allow(clippy::unwrap_used, reason = "in tests a panic is the failure")]
 #![allow(clippy::float_cmp, reason = "the zeros of a chain are exact")]
 
+mod common;
+
+use common::problems::{published, refusal};
 use immaculate::imm::Quantity;
 use immaculate::imm::continuous::{rates_of_sojourns, transition_over};
 use immaculate::number::{Enclosure, Field, Rational, Real};
-use immaculate::oracle::case;
 use immaculate::oracle::certify::certify;
 use immaculate::oracle::problem::ProblemFile;
 use immaculate::oracle::trace::Trace;
@@ -174,15 +176,6 @@ fn a_mean_sojourn_time_is_the_mean_of_the_time_to_leave() {
 }
 
 // Problems
-
-fn published(id: &str) -> Value {
-    let mut all = case::all().unwrap().iter();
-    serde_json::from_str(all.find(|case| case.problem.id == id).unwrap().problem_text).unwrap()
-}
-
-fn refusal(problem: &Value) -> String {
-    ProblemFile::read(&problem.to_string()).unwrap_err().to_string()
-}
 
 fn certified(problem: &Value) -> Trace {
     certify(&ProblemFile::read(&problem.to_string()).unwrap())

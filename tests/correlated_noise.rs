@@ -5,13 +5,14 @@
 #![allow(clippy::unwrap_used, reason = "in tests a panic is the failure")]
 #![allow(clippy::float_cmp, reason = "certified doubles of equal values are equal")]
 
+mod common;
+
+use common::problems::{published, read, refusal};
 use immaculate::filter::{correlated, kalman, update};
 use immaculate::imm::Quantity;
 use immaculate::matrix::ldl;
 use immaculate::number::{Field, Rational};
-use immaculate::oracle::case;
 use immaculate::oracle::certify::certify;
-use immaculate::oracle::problem::ProblemFile;
 use immaculate::oracle::trace::Trace;
 use nalgebra::{Matrix2, SMatrix};
 use serde_json::{Value, json};
@@ -66,19 +67,6 @@ fn correlated_noises_are_conditioning_of_the_joint_gaussian() {
     // As if they were independent it is another filter.
     assert_ne!(kalman::innovation_covariance(&h, &predicted, &r), s);
     assert_ne!(kalman::cross_covariance(&predicted, &h), c);
-}
-
-fn published(id: &str) -> Value {
-    let mut all = case::all().unwrap().iter();
-    serde_json::from_str(all.find(|case| case.problem.id == id).unwrap().problem_text).unwrap()
-}
-
-fn read(problem: &Value) -> ProblemFile {
-    ProblemFile::read(&problem.to_string()).unwrap()
-}
-
-fn refusal(problem: &Value) -> String {
-    ProblemFile::read(&problem.to_string()).unwrap_err().to_string()
 }
 
 fn certified(problem: &Value) -> Trace {

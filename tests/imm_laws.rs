@@ -16,7 +16,7 @@ mod common;
 use common::{
     CHAIN, ROUNDOFF, RULES, Scene, TURN_RATE, all_scenes, bits, bits_of, converted_scene, distance, distance_of_runs,
     fixed_gain_scene, linear_scene, linear_scene_with, mode, polar_scene, polar_scene_seen_from, rounding_of, rule_of,
-    truth,
+    scene_over_the_sensor, truth, unscented_of,
 };
 use immaculate::filter::extended::measurement_jacobian;
 use immaculate::filter::fixed_gain::FixedGain;
@@ -32,7 +32,6 @@ use immaculate::model::space::{Component, Space};
 use immaculate::model::{Conversion, PolarComponent, Sensor};
 use immaculate::number::{self, Field, RandomRounding, Rational};
 use immaculate::paper::zhu2016::diagonal_mixing;
-use immaculate::rule::unscented::{Parameters, unscented};
 use immaculate::rule::{Rule, RuleName};
 use nalgebra::{
     Const, DMatrix, DVector, Dim, Dyn, Matrix3, Matrix4, RowVector3, SMatrix, SVector, U2, U4, U8, Vector2, Vector4,
@@ -887,29 +886,12 @@ fn a_failed_step_leaves_the_filter_at_the_step_before() {
 /// With κ = −3/2 the innovation covariance is positive, and it takes two updates until an estimate's own covariance is not.
 #[test]
 fn negative_weights_can_leave_no_covariance_and_the_failure_names_it() {
-    let over_the_sensor = |rule: Rule<f64, U4>| {
-        let mut scene = polar_scene_seen_from([0.0, 0.0], "unscented");
-        scene.problem.filters = vec![Filter::points(rule)];
-        for estimate in &mut scene.initial.modes {
-            estimate.mean = vector![0.0, 10.0, 0.0, -5.0];
-            estimate.covariance = Matrix4::from_diagonal(&vector![1e6, 1e2, 1e6, 1e2]);
-        }
-        for (k, z) in scene.measurements.iter_mut().enumerate() {
-            let t = k as f64 + 1.0;
-            *z = Some(vector![(10.0 * t).hypot(5.0 * t), (-5.0_f64).atan2(10.0)]);
-        }
-        scene
-    };
-    let kappa = |numerator| {
-        let parameters = Parameters::of_kappa(Rational::new(numerator, 2));
-        Rule::from_exact(&unscented(4, &parameters).unwrap()).unwrap()
-    };
-    let failure = over_the_sensor(kappa(-5)).try_run().unwrap_err();
+    let failure = scene_over_the_sensor(unscented_of(-5)).try_run().unwrap_err();
     assert_eq!(
         failure.to_string(),
         "step 1, mode `constant velocity`, gain: the innovation covariance is not positive definite: pivot 1 of 2 is not positive"
     );
-    let failure = over_the_sensor(kappa(-3)).try_run().unwrap_err();
+    let failure = scene_over_the_sensor(unscented_of(-3)).try_run().unwrap_err();
     assert_eq!(
         failure.to_string(),
         "step 3, mode `constant velocity`, predicted.mean: the mixed covariance is not positive definite: pivot 3 of 4 is not \
@@ -917,7 +899,7 @@ fn negative_weights_can_leave_no_covariance_and_the_failure_names_it() {
     );
     // Rules whose weights at the positions are positive go through; κ = 3 − n is among them, with its −1/3 at the centre.
     for rule in RULES {
-        assert!(over_the_sensor(common::rule_of(rule)).try_run().is_ok(), "{rule}");
+        assert!(scene_over_the_sensor(common::rule_of(rule)).try_run().is_ok(), "{rule}");
     }
 }
 

@@ -5,27 +5,15 @@
 #![allow(clippy::unwrap_used, reason = "in tests a panic is the failure")]
 #![allow(clippy::float_cmp, reason = "certified doubles of equal values are equal")]
 
+mod common;
+
+use common::problems::{published, read, refusal};
 use immaculate::imm::Quantity;
 use immaculate::imm::probability::{evidence, mixing_probability, mode_probability, predicted_mode_probability};
 use immaculate::number::{Field, Rational, RationalFunction};
-use immaculate::oracle::case;
 use immaculate::oracle::certify::certify;
-use immaculate::oracle::problem::ProblemFile;
 use immaculate::oracle::trace::Trace;
 use serde_json::{Value, json};
-
-fn published(id: &str) -> Value {
-    let mut all = case::all().unwrap().iter();
-    serde_json::from_str(all.find(|case| case.problem.id == id).unwrap().problem_text).unwrap()
-}
-
-fn read(problem: &Value) -> ProblemFile {
-    ProblemFile::read(&problem.to_string()).unwrap()
-}
-
-fn refusal(problem: &Value) -> String {
-    ProblemFile::read(&problem.to_string()).unwrap_err().to_string()
-}
 
 /// The certified values of a problem whose modes start as `interaction` says.
 fn certified(problem: &Value, interaction: &str) -> Trace {

@@ -4,24 +4,17 @@
 //! it; and the slope of what is minimised, which must vanish after many turns and does not after one.
 #![allow(clippy::unwrap_used, reason = "in tests a panic is the failure")]
 
+mod common;
+
+use common::problems::{published, read};
 use immaculate::filter::extended::measurement_jacobian;
 use immaculate::imm::Quantity;
-use immaculate::oracle::case;
 use immaculate::oracle::certify::certify;
 use immaculate::oracle::problem::ProblemFile;
 use immaculate::oracle::run::run_in_doubles;
 use immaculate::oracle::trace::Trace;
 use nalgebra::{DMatrix, DVector};
 use serde_json::{Value, json};
-
-fn published(id: &str) -> Value {
-    let mut all = case::all().unwrap().iter();
-    serde_json::from_str(all.find(|case| case.problem.id == id).unwrap().problem_text).unwrap()
-}
-
-fn read(problem: &Value) -> ProblemFile {
-    ProblemFile::read(&problem.to_string()).unwrap()
-}
 
 /// The same problem with a number of linearisations in every mode.
 fn iterated(problem: &Value, times: usize) -> Value {

@@ -7,15 +7,15 @@
 
 mod common;
 
-use common::{Scene, all_scenes, bits, bits_of, converted_scene, fixed_gain_scene, linear_scene, polar_scene};
+use common::{
+    Scene, all_scenes, bits, bits_of, converted_scene, fixed_gain_scene, linear_scene, polar_scene,
+    scene_over_the_sensor, unscented_of,
+};
 use immaculate::filter::Filter;
 use immaculate::imm::state_conversion::{Reader, StateConversion, StateConversions};
 use immaculate::imm::{Interaction, PlainImm};
 use immaculate::model::Conversion;
 use immaculate::model::motion::Motion;
-use immaculate::number::Rational;
-use immaculate::rule::Rule;
-use immaculate::rule::unscented::{Parameters, unscented};
 use nalgebra::{Matrix4, U2, U4, matrix, vector};
 use std::num::NonZeroUsize;
 
@@ -132,27 +132,14 @@ fn the_plain_cycle_has_the_bits_of_the_recorded_one() {
     assert!(steps > 500, "{steps} steps are few");
 }
 
-/// A path that begins over the sensor, for points with κ = numerator/2: so negative a weight at the centre loses a covariance.
-fn over_the_sensor(numerator: i64) -> Scene {
-    let parameters = Parameters::of_kappa(Rational::new(numerator, 2));
-    let rule = Rule::from_exact(&unscented(4, &parameters).expect("κ > −n")).expect("it has four components");
-    let mut scene = with_filters(polar_scene("unscented"), vec![Filter::points(rule)]);
-    for estimate in &mut scene.initial.modes {
-        estimate.mean = vector![0.0, 10.0, 0.0, -5.0];
-        estimate.covariance = Matrix4::from_diagonal(&vector![1e6, 1e2, 1e6, 1e2]);
-    }
-    for (k, z) in scene.measurements.iter_mut().enumerate() {
-        let t = k as f64 + 1.0;
-        *z = Some(vector![(10.0 * t).hypot(5.0 * t), (-5.0_f64).atan2(10.0)]);
-    }
-    scene
-}
-
 /// Mixed and innovation covariances that are not definite, a sensor's own place, what is beyond doubles, and measurements that
 /// are none.
 #[test]
 fn a_step_that_fails_says_the_same_and_leaves_the_filter_as_it_is() {
-    let (mixed, seen) = (over_the_sensor(-3), over_the_sensor(-5));
+    let (mixed, seen) = (
+        scene_over_the_sensor(unscented_of(-3)),
+        scene_over_the_sensor(unscented_of(-5)),
+    );
     let mut exact = linear_scene();
     exact.problem.measurement_noise.fill(0.0);
     exact

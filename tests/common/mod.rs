@@ -2,6 +2,7 @@
 
 #![allow(dead_code, reason = "each test file uses its own part of this one")]
 
+pub mod problems;
 pub mod program;
 pub mod runs;
 pub mod svg;
@@ -12,7 +13,9 @@ use immaculate::gaussian::Gaussian;
 use immaculate::imm::{Equations, Failure, Imm, Initial, Interaction, InvalidProblem, Problem, Step};
 use immaculate::model::motion::{Mode, Motion, constant_velocity, coordinated_turn, integrated_noise};
 use immaculate::model::{Conversion, PolarComponent, Sensor};
-use immaculate::rule::RuleName;
+use immaculate::number::Rational;
+use immaculate::rule::unscented::{Parameters, unscented};
+use immaculate::rule::{Rule, RuleName};
 use nalgebra::{Matrix4, SMatrix, SVector, U2, U4, Vector2, Vector4, matrix, vector};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -109,6 +112,27 @@ pub fn polar_scene_seen_from(location: [f64; 2], rule: &str) -> Scene {
     }
 }
 
+/// A path that begins over the sensor, for filters with the points of a rule: a weight that is too negative there loses a covariance.
+pub fn scene_over_the_sensor(rule: Rule<f64, U4>) -> Scene {
+    let mut scene = polar_scene("unscented");
+    scene.problem.filters = vec![Filter::points(rule)];
+    for estimate in &mut scene.initial.modes {
+        estimate.mean = vector![0.0, 10.0, 0.0, -5.0];
+        estimate.covariance = Matrix4::from_diagonal(&vector![1e6, 1e2, 1e6, 1e2]);
+    }
+    for (k, z) in scene.measurements.iter_mut().enumerate() {
+        let t = k as f64 + 1.0;
+        *z = Some(vector![(10.0 * t).hypot(5.0 * t), (-5.0_f64).atan2(10.0)]);
+    }
+    scene
+}
+
+/// The unscented rule with κ = numerator/2.
+pub fn unscented_of(numerator: i64) -> Rule<f64, U4> {
+    let parameters = Parameters::of_kappa(Rational::new(numerator, 2));
+    Rule::from_exact(&unscented(4, &parameters).expect("κ is above −n")).expect("its points have four components")
+}
+
 /// The same converted to positions.
 pub fn converted_scene(conversion: Conversion, location: [f64; 2]) -> Scene {
     let mut scene = polar_scene_seen_from(location, "simplex-5");
@@ -134,7 +158,7 @@ pub fn all_scenes() -> Vec<(String, Scene)> {
 }
 
 /// A rule by name.
-pub fn rule_of(name: &str) -> immaculate::rule::Rule<f64, U4> {
+pub fn rule_of(name: &str) -> Rule<f64, U4> {
     let name: RuleName = name.parse().expect("a known rule");
     name.rule().expect("a rule of dimension four")
 }
