@@ -1,4 +1,5 @@
-//! Goal: modes that start from the combined estimate, or each from its own, are the filters of which the literature says so.
+//! Goal: modes that all start from the combined estimate are the first-order filter of the literature; modes that each start from their
+//! own are its static bank.
 //!
 //! Method: the equations in rational functions and rationals, and whole certified runs against one another: certified doubles of equal
 //! values are equal. Problems that must be refused are refused in a sentence.
@@ -22,7 +23,7 @@ fn certified(problem: &Value, interaction: &str) -> Trace {
     certify(&read(&problem)).unwrap().trace
 }
 
-/// Three Kalman filters along four steps, one of which has no detection, under this chain.
+/// Three Kalman filters along four steps, one without a detection, under this chain.
 fn under(chain: Value) -> Value {
     let mut problem = published("gpb1.kalman");
     problem["transition"] = chain;

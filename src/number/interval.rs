@@ -14,7 +14,7 @@
 //! Zero and one without a radius stay exact: 0 + x is x, 0 x is zero, and 1 x is x. All other results have a radius.
 //!
 //! Elementary functions are those of [`Enclosure`] with 64 bits, whose proof is there. Where more digits are needed, so is [`Enclosure`]:
-//! this is for derivatives along long runs, of which a few digits are enough and which are many.
+//! this is for the many derivatives along long runs, where a few digits are enough.
 
 use super::operators::{division_operators, ring_operators};
 use super::{Enclosure, Field, Rational, Real, Roots, Surd};

@@ -143,7 +143,7 @@ impl Ellipsoid {
     }
 }
 
-/// What decides how small the image is, and not whether it holds: any doubles, of which b must be positive.
+/// A choice that decides how small the image is, and not whether it holds: any doubles with b > 0.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Choice {
     /// A′.

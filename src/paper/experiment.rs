@@ -47,7 +47,7 @@ impl<S: Simulation> Experiment<S> {
     }
 
     /// Whether no run fails and no position error of any filter reaches a limit, in metres, with the figures in words; and, which decides
-    /// nothing, of which filters the errors are certainly larger than their covariances say.
+    /// nothing, which filters have errors that are certainly larger than their covariances say.
     pub fn stays_within(&self, limit: f64) -> (bool, String) {
         let comparison = self.comparison();
         let mut bounded = true;

@@ -31,7 +31,7 @@ pub struct BankAnswer {
     /// Letters of words: the numbers of the modes, from 0 as in `modes[0]`.
     letters: Vec<String>,
     radii: Vec<Between>,
-    /// Whether each filter by itself is stable; none where that cannot be told.
+    /// Whether each filter by itself is stable; none where that is undecided.
     alone: Option<bool>,
     together: Option<(StabilityVerdict<Dyn>, Bounds<Dyn>)>,
 }

@@ -24,7 +24,7 @@ const DECIMALS: u32 = 9;
 /// Forms that are printed; more of them nobody follows by hand.
 const PRINTED: usize = 4;
 
-/// What is to be told: the filters' letters, their matrices, the verdict and the bounds.
+/// The content of the report: the filters' letters, their matrices, the verdict and the bounds.
 pub(super) struct Proof<'a, N: Dim>
 where
     Shapes: Holds<N>,

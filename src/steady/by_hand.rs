@@ -6,8 +6,8 @@
 use super::certificate::{Edge, Quadratics};
 use super::closed_loops::{BITS, ClosedLoops, Entries};
 use super::pair::product;
-use super::search::of_any_side;
 use super::polynomial::{MatrixRows, characteristic_polynomial, rows_of};
+use super::search::of_any_side;
 use crate::matrix::{Holds, Shapes, ldl};
 use crate::number::{Enclosure, Field, Rational};
 use nalgebra::{DMatrix, Dim, OMatrix};

@@ -152,7 +152,7 @@ where
         }
     }
 
-    /// Whether the spectral radius of a product is below a bound; none if that cannot be told.
+    /// Whether the spectral radius of a product is below a bound; none if that is undecided.
     pub fn is_radius_below(&self, word: &[usize], bound: &Rational) -> Option<bool> {
         match &self.matrices {
             Entries::Exact(matrices) => has_radius_below(&rows_of(&product(word, matrices)), bound),
@@ -276,7 +276,7 @@ where
         search::fastest_allowed_word(matrices, longest, |word| self.is_allowed(word))
     }
 
-    /// The longest words of which all can be tried in some seconds.
+    /// The greatest length of words that can all be tried in some seconds.
     fn affordable(matrices: &[OMatrix<f64, N, N>], longest: usize) -> usize {
         let words = |length: &usize| {
             u32::try_from(*length)

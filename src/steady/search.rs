@@ -100,7 +100,7 @@ where
     )
 }
 
-/// A certificate of growth from a word and its growth a letter; none if the growth is too near one to be told.
+/// A certificate of growth from a word and its growth a letter; none if the growth is too near one to be certified.
 ///
 /// The bound has three digits of what the spectral radius is above one, and is below it by one or two units of the last: short, and tight.
 pub fn product_certificate(word: Vec<usize>, growth: f64) -> Option<Product> {

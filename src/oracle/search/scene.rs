@@ -23,7 +23,7 @@ pub struct Offer {
 }
 
 impl Offer {
-    /// The kinds of which there are problems: some need format 2, and no states of their own and no rates are drawn.
+    /// The kinds that are drawn. Some need format 2; modes with their own states and chains by rates are never drawn.
     pub(super) fn possible(&self) -> Vec<&str> {
         let kinds = self
             .kinds

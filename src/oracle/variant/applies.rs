@@ -1,4 +1,4 @@
-//! Where a variant can make a difference: the kinds of problem of which the catalogue speaks.
+//! Where a variant can make a difference: the kinds of problem that the catalogue names.
 
 use super::super::setup::Setup;
 use super::{draws_no_points, draws_points, has_correlated_noises, has_state_conversions, zero_rows};
