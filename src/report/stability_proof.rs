@@ -130,7 +130,7 @@ where
                 let slack = number(&found.slack);
                 writeln!(
                     text,
-                    "    {name} ⪰ {value} with the pivots {pivots}; {slack} I is taken away for ±"
+                    "    {name} ⪰ {value} with the pivots {pivots}; {slack} I was subtracted for the ±"
                 )
             } else {
                 writeln!(text, "    {name} = {value} with the pivots {pivots}")
