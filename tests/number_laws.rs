@@ -9,7 +9,7 @@
 
 use immaculate::matrix::is_finite;
 use immaculate::number::{
-    Dual, Enclosure, Field, Polynomial, RandomRounding, Rational, RationalFunction, Real, Roots, Surd,
+    Counted, Dual, Enclosure, Field, Polynomial, RandomRounding, Rational, RationalFunction, Real, Roots, Surd,
 };
 use nalgebra::{Matrix2, Vector2};
 use num_traits::{One, Zero};
@@ -210,6 +210,7 @@ fn undecided_is_unequal_to_itself_and_absorbs_every_operation() {
         check_undecided_is_absorbing(&RationalFunction::integer(value));
         check_undecided_is_absorbing(&f64::integer(value));
         check_undecided_is_absorbing(&RandomRounding::integer(value));
+        check_undecided_is_absorbing(&Counted::integer(value));
         check_undecided_is_absorbing(&Dual::<Rational>::integer(value));
         Enclosure::with_precision(60, || check_undecided_is_absorbing(&Enclosure::integer(value)));
     }
@@ -230,6 +231,7 @@ fn only_a_number_is_decided() {
     }
     law::<f64>();
     law::<RandomRounding>();
+    law::<Counted>();
     law::<Dual<Rational>>();
     law::<Rational>();
     law::<Surd>();

@@ -17,10 +17,11 @@
 //! | [`Dual`] over another                 | that of the other         | derivatives, proven or certified                |
 //! | [`Gradient`] over another             | that of the other         | all derivatives at once                         |
 //! | [`Interval`]                          | [`Real`]                  | bounds in doubles: fast, and not narrow         |
+//! | [`Counted`]                           | [`Real`]                  | how many operations an evaluation takes         |
 //!
 //! Reading order: the three traits here; [`Rational`], [`Surd`], [`RationalFunction`] (with [`Polynomial`]), which are exact;
 //! [`Enclosure`] and [`Interval`], which know how far they are off, and the doubles, which do not; [`Dual`], [`Gradient`] and
-//! [`RandomRounding`], which say something about an evaluation besides its value.
+//! [`RandomRounding`] and [`Counted`], which say something about an evaluation besides its value.
 //!
 //! Three traits say what an equation needs, and an equation has the weakest bound it can live with:
 //! [`Field`] (+ − × ÷), [`Roots`] (the square roots of rationals, all that cubature points need) and [`Real`]
@@ -48,6 +49,7 @@
 //! assert_eq!(*gain(Dual::variable(1.0), Dual::constant(3.0)).slope(), 3.0 / 16.0);
 //! ```
 
+mod counted;
 mod decimal;
 mod dual;
 mod enclosure;
@@ -62,6 +64,7 @@ mod rational;
 mod rational_function;
 mod surd;
 
+pub use counted::Counted;
 pub use dual::Dual;
 pub use enclosure::Enclosure;
 pub use gradient::Gradient;
