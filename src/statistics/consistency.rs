@@ -8,8 +8,9 @@
 
 use crate::gaussian::Gaussian;
 use crate::imm::Step;
-use crate::matrix::{ldl, quadratic_form};
-use nalgebra::{Const, SMatrix, SVector};
+use crate::matrix::{Holds, Shapes, ldl, quadratic_form, rows};
+use crate::number::Field;
+use nalgebra::{Const, Dim, OMatrix, OVector, SVector, U1};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Normalised estimation error squared: (x − x̂)ᵀ P⁻¹ (x − x̂), without a unit; its expectation is N.
@@ -55,18 +56,21 @@ pub fn nees<const N: usize>(estimate: &Gaussian<f64, Const<N>>, truth: &SVector<
 /// step.measurement = None;
 /// assert_eq!(nis(&step), None);
 /// ```
-pub fn nis<const N: usize, const M: usize>(step: &Step<f64, Const<N>, Const<M>>) -> Option<f64> {
-    step.measurement?;
+pub fn nis<T: Field, N: Dim, M: Dim>(step: &Step<T, N, M>) -> Option<T>
+where
+    Shapes: Holds<N, M>,
+{
+    let m = rows(step.measurement.as_ref()?);
     let probabilities = &step.predicted_mode_probabilities;
-    let mut mean = SVector::<f64, M>::zeros();
+    let mut mean = OVector::<T, M>::zeros_generic(m, U1);
     for (probability, innovation) in probabilities.iter().zip(&step.innovations) {
-        mean += innovation * *probability;
+        mean += innovation * probability.clone();
     }
-    let mut covariance = SMatrix::<f64, M, M>::zeros();
+    let mut covariance = OMatrix::<T, M, M>::zeros_generic(m, m);
     for (j, probability) in probabilities.iter().enumerate() {
-        let deviation = step.innovations[j] - mean;
-        let spread = deviation * deviation.transpose();
-        covariance += (step.innovation_covariances[j] + spread) * *probability;
+        let deviation = &step.innovations[j] - &mean;
+        let spread = &deviation * deviation.transpose();
+        covariance += (&step.innovation_covariances[j] + spread) * probability.clone();
     }
     Some(quadratic_form(&ldl(&covariance), &mean))
 }
