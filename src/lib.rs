@@ -74,6 +74,7 @@
 //! | [`steady`]     | steady gains, Riccati and Lyapunov equations, joint stability and its certificates | `paper`           |
 //! | [`statistics`] | errors over runs, their uncertainty, consistency                                   | `paper`           |
 //! | [`paper`]      | the papers' simulations, published tables and claims, and their judges             | `paper`           |
+//! | [`compare`]    | every kind of filter on the simulated truth of a problem                           | `cli`             |
 //! | [`book`]       | every equation with its code, derivation, errata, tests, mistakes and cases        | `cli`             |
 //! | [`report`]     | printed text, figures and the site                                                 | `cli`             |
 //! | `cli`          | the commands of the program                                                        | `cli`             |
@@ -161,6 +162,7 @@
 //! | `immaculate report --out DIR`    | writes the whole specification and its results as a static site                  |
 //! | `immaculate reproduce`, `claims` | runs the papers' simulations beside their tables; judges their claims            |
 //! | `immaculate check -- COMMAND`    | judges a filter in any language: whether it is right, or what is wrong and why  |
+//! | `immaculate compare FILE`        | which filter to use for a problem: every kind of filter on simulated truth      |
 //! | `immaculate cases`, `trace FILE` | the certified cases; every value of every step of a problem                      |
 //! | `immaculate variants`, `rule`    | the catalogue of mistakes, conventions and forms; points and weights of a rule   |
 //! | `immaculate stability`           | whether two fixed-gain filters are stable together, with a proof                 |
@@ -190,6 +192,8 @@ pub mod steady;
 
 #[cfg(feature = "cli")]
 pub mod book;
+#[cfg(feature = "cli")]
+pub mod compare;
 #[cfg(feature = "cli")]
 pub mod report;
 
