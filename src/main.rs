@@ -33,6 +33,8 @@ enum Command {
     Init(cli::init::InitArguments),
     /// Run a problem file and print every value of every step, with --digits to proven digits
     Trace(cli::trace::TraceArguments),
+    /// Say which filter to use for a problem file: every kind that applies on simulated truth, with errors, consistency and cost
+    Compare(cli::compare::CompareArguments),
     /// List, show, copy or prove the certified cases
     Cases(cli::cases::CasesArguments),
     /// List the catalogue of mistakes, conventions and forms that `check` can name
@@ -119,6 +121,7 @@ pub fn run(cli: &Cli) -> Result<Done, Refusal> {
         Command::Choices(arguments) => Ok(cli::choices::run(arguments)),
         Command::Check(arguments) => cli::check::run(arguments),
         Command::Init(arguments) => cli::init::run(arguments),
+        Command::Compare(arguments) => cli::compare::run(arguments),
         Command::Trace(arguments) => cli::trace::run(arguments),
         Command::Cases(arguments) => cli::cases::run(arguments),
         Command::Variants(arguments) => cli::variants::run(arguments),

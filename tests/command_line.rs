@@ -17,10 +17,10 @@ use std::process::{Output, Stdio};
 #[test]
 fn help_and_version_are_there() {
     let help = succeeds(&["--help"]);
-    for word in ["reproduce", "claims", "rule", "choices", "Exit status"] {
+    for word in ["compare", "reproduce", "claims", "rule", "choices", "Exit status"] {
         assert!(help.contains(word), "{word}");
     }
-    for command in ["reproduce", "claims", "rule", "choices", "equation"] {
+    for command in ["compare", "reproduce", "claims", "rule", "choices", "equation"] {
         assert!(succeeds(&[command, "--help"]).contains("--json"), "{command}");
     }
     assert_eq!(

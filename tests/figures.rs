@@ -6,12 +6,16 @@
 mod common;
 
 use common::runs::{self, EFFORT};
+use immaculate::compare::{Contest, Sample};
+use immaculate::oracle::case;
 use immaculate::paper::Paper;
 use immaculate::paper::result::Reproduction;
 use immaculate::paper::specification::Choices;
 use immaculate::paper::sustika2015::sweep::{Sweep, SweptTrajectory};
 use immaculate::report::palette::{self, hexadecimal};
-use immaculate::report::{conversion, figure, fit_error, long_term, path, published, reproduction, stability_map};
+use immaculate::report::{
+    comparison_figure, conversion, figure, fit_error, long_term, path, published, reproduction, stability_map,
+};
 use immaculate::steady::map::Map;
 use immaculate::steady::verdict::Depth;
 use std::collections::BTreeSet;
@@ -248,6 +252,20 @@ fn draw_all() -> Vec<(String, String)> {
     for trajectory in SweptTrajectory::ALL {
         let svg = fit_error::draw(&points, trajectory, sweep.runs).unwrap();
         all.push((format!("sweep-{}", trajectory.name()), svg));
+    }
+    let case = case::all()
+        .unwrap()
+        .iter()
+        .find(|case| case.problem.id == "gpb1.kalman");
+    let sample = Sample {
+        runs: Some(4),
+        seed: 1,
+        steps: Some(8),
+    };
+    let result = Contest::new(&case.unwrap().problem, sample).unwrap().run(&|| ());
+    for table in &result.tables {
+        let name = format!("comparison-{}", comparison_figure::what(table));
+        all.push((name, comparison_figure::draw(&result, table).unwrap()));
     }
     // From the certainly stable to the certainly unstable.
     let depth = Depth {

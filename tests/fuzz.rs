@@ -693,7 +693,7 @@ fn a_file_and_a_line_have_a_greatest_length() {
 // Arguments
 
 /// Every command with places for words.
-const COMMANDS: [(&[&str], &[&str]); 19] = [
+const COMMANDS: [(&[&str], &[&str]); 20] = [
     (&["equation", "_"], &[]),
     (&["rule", "_", "-n", "_"], &["--json"]),
     (&["rule", "unscented", "-n", "4"], &["--alpha", "--beta", "--kappa"]),
@@ -703,6 +703,7 @@ const COMMANDS: [(&[&str], &[&str]); 19] = [
     (&["cases", "show", "_"], &["--json"]),
     (&["cases", "schema", "_"], &[]),
     (&["trace", "_"], &["--json", "--csv"]),
+    (&["compare", "_", "--runs", "2"], &["--seed", "--json"]),
     (&["trace", "update.kalman"], &["--digits", "--json"]),
     (
         &["stability"],

@@ -13,6 +13,7 @@ use std::process::Command;
 
 const README: &str = include_str!("../README.md");
 const CHECKING: &str = include_str!("../spec/checking.md");
+const COMPARING: &str = include_str!("../spec/comparing.md");
 const FINDINGS: &str = include_str!("../spec/findings.md");
 const GUARANTEES: &str = include_str!("../spec/guarantees.md");
 const LIBRARY: &str = include_str!("../spec/library.md");
@@ -23,7 +24,7 @@ const NAMED: &str = include_str!("snapshots/oracle__what_each_level_of_answer_ca
 
 #[test]
 fn the_commands_of_the_pages_print_what_they_show() {
-    let pages = [README, CHECKING, FINDINGS, GUARANTEES, LIBRARY];
+    let pages = [README, CHECKING, COMPARING, FINDINGS, GUARANTEES, LIBRARY];
     let blocks = pages
         .into_iter()
         .flat_map(|page| page.split("```console\n").skip(1))

@@ -5,6 +5,7 @@ pub mod cases;
 pub mod check;
 pub mod choices;
 pub mod claims;
+pub mod compare;
 pub mod demonstration;
 pub mod equation;
 pub mod init;
@@ -22,6 +23,8 @@ pub mod trace;
 pub mod variants;
 
 use immaculate::file;
+use immaculate::oracle::case;
+use immaculate::oracle::problem::ProblemFile;
 use immaculate::paper::{self, Effort, Paper};
 use std::io::Write;
 use std::path::Path;
@@ -94,6 +97,22 @@ pub fn read_file(path: &Path) -> Result<String, Refusal> {
         file::read(path)
     };
     text.map_err(|error| Refusal::Request(about(path, &error)))
+}
+
+/// Reads a problem file, or the published problem of an id where there is no such file; its name in messages, and the problem.
+pub fn read_problem(path: &Path) -> Result<(String, ProblemFile), Refusal> {
+    let name = path.display().to_string();
+    let published = case::all()
+        .map_err(Refusal::request)?
+        .iter()
+        .find(|case| case.problem.id == name)
+        .filter(|_| !path.exists());
+    let text = match published {
+        Some(case) => case.problem_text.to_owned(),
+        None => read_file(path)?,
+    };
+    let problem = ProblemFile::read(&text).map_err(|error| Refusal::Request(format!("{name}: {error}")))?;
+    Ok((name, problem))
 }
 
 fn about(path: &Path, error: &std::io::Error) -> String {

@@ -2,7 +2,7 @@
 //!
 //! A trace is printed as text, JSON or long CSV, in doubles or in proven digits, or as literals of a language.
 
-use super::{Done, Refusal, json_text, read_file};
+use super::{Done, Refusal, json_text, read_problem};
 use clap::Args;
 use immaculate::oracle::certify::{certified_as_far_as_it_goes, certified_decimals};
 use immaculate::oracle::check::{NotMade, convention};
@@ -38,18 +38,8 @@ pub struct TraceArguments {
 }
 
 pub fn run(arguments: &TraceArguments) -> Result<Done, Refusal> {
-    let name = arguments.file.display().to_string();
-    let published = immaculate::oracle::case::all()
-        .map_err(Refusal::request)?
-        .iter()
-        .find(|case| case.problem.id == name)
-        .filter(|_| !arguments.file.exists());
-    let text = match published {
-        Some(case) => case.problem_text.to_owned(),
-        None => read_file(&arguments.file)?,
-    };
+    let (name, mut problem) = read_problem(&arguments.file)?;
     let wrong = |error: &dyn std::fmt::Display| Refusal::Request(format!("{name}: {error}"));
-    let mut problem = ProblemFile::read(&text).map_err(|error| wrong(&error))?;
     problem.declared = declared(&arguments.conventions)?;
     if let Some(language) = arguments.language {
         let (trace, certified) = certified_as_far_as_it_goes(&problem).map_err(|error| wrong(&error))?;

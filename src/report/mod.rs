@@ -7,6 +7,7 @@
 //!   published and computed;
 //! - [`outcome`]: what became of published figures, in a sentence;
 //! - [`conversion`]: where a converted measurement can be trusted;
+//! - [`comparison`], [`comparison_figure`]: which filter a problem should have;
 //! - [`stability`], [`stability_bank`], [`stability_map`]: two fixed-gain filters, those of a problem file, and all pairs;
 //! - [`check`], [`check_json`], [`verdict`]: the verdict on a program under test; [`search`]: what a search has found;
 //! - [`chart`], [`palette`]: what all figures have in common;
@@ -18,6 +19,8 @@ pub mod chart;
 pub mod check;
 pub mod check_json;
 pub mod claims;
+pub mod comparison;
+pub mod comparison_figure;
 pub mod conversion;
 pub mod divergence;
 pub mod equation;
