@@ -69,6 +69,7 @@
 //! | [`rule`]       | cubature rules in exact form, their moments and degrees                            |                   |
 //! | [`filter`]     | one filter: Kalman, cubature, converted measurements, fixed gain                   |                   |
 //! | [`imm`]        | the cycle: a table of equations and the wiring that runs it                        |                   |
+//! | [`smoother`]   | past states given later measurements, of one filter or of several that switch      |                   |
 //! | [`mod@file`]   | bounded reading, atomic writing                                                    | `oracle`, `paper` |
 //! | [`oracle`]     | certified cases, traces, and the judge of other filters                            | `oracle`          |
 //! | [`steady`]     | steady gains, Riccati and Lyapunov equations, joint stability and its certificates | `paper`           |
@@ -176,6 +177,7 @@ pub mod matrix;
 pub mod model;
 pub mod number;
 pub mod rule;
+pub mod smoother;
 
 #[cfg(any(feature = "oracle", feature = "paper"))]
 pub mod file;

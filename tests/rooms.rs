@@ -85,7 +85,7 @@ fn table_of_rooms() -> Vec<Room> {
             features: in_backticks(cells[3]).map(str::to_owned).collect(),
         });
     }
-    assert_eq!(rooms.len(), 16);
+    assert_eq!(rooms.len(), 17);
     rooms
 }
 

@@ -164,6 +164,7 @@ fn equations_call_no_function_that_differs_between_platforms() {
         "src/model/",
         "src/filter/",
         "src/imm/",
+        "src/smoother/",
         "src/steady/gains.rs",
         "src/steady/linear.rs",
         "src/steady/polynomial.rs",

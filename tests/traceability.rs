@@ -314,12 +314,13 @@ fn every_public_equation_names_its_number_or_its_source() {
 // Examples: what an equation does is shown by numbers that can be followed by hand
 
 /// The rooms in which every public equation has an example that is run.
-const ROOMS_WITH_EXAMPLES: [&str; 10] = [
+const ROOMS_WITH_EXAMPLES: [&str; 11] = [
     "src/gaussian.rs",
     "src/matrix.rs",
     "src/model/",
     "src/filter/",
     "src/imm/",
+    "src/smoother/",
     "src/rule/",
     "src/steady/",
     "src/statistics/",
@@ -762,13 +763,15 @@ fn first_sentence(doc: &str) -> String {
 
 /// The folders and files that hold equations.
 fn is_equation_room(path: &str) -> bool {
-    const ROOMS: [&str; 8] = [
+    const ROOMS: [&str; 10] = [
         "src/gaussian.rs",
         "src/matrix.rs",
         "src/rule/",
         "src/model/",
         "src/filter/",
         "src/imm/probability.rs",
+        "src/smoother/rauch_tung_striebel.rs",
+        "src/smoother/switching.rs",
         "src/paper/zhu2016/diagonal_mixing.rs",
         "src/statistics/",
     ];

@@ -303,3 +303,51 @@ where
     }
     covariance
 }
+
+/// Covariance of a state and the next one, D, of which smoothers make their gain.
+///
+/// Source: S. Särkkä, Unscented Rauch-Tung-Striebel Smoother, 2008.
+///
+/// ```text
+/// D = Σₛ wₛ (χₛ − x̂⁰)(χ*ₛ − x̂⁻)ᵀ
+/// ```
+///
+/// | literature | here             | shape | meaning                                                            |
+/// |------------|------------------|-------|--------------------------------------------------------------------|
+/// | wₛ         | `weights`        | L     | the rule's weights for covariances                                 |
+/// | χₛ         | `points`         | L × N | the points of the estimate before the motion                       |
+/// | x̂⁰         | `mean`           | N     | its mean                                                           |
+/// | χ*ₛ        | `propagated`     | L × N | the propagated points, angles in the turn of x̂⁻                    |
+/// | x̂⁻         | `predicted_mean` | N     | predicted mean                                                     |
+///
+/// Why: the noise of the motion is independent of the state before it, so that Q has no part in D.
+///
+/// Example: the points 7 and 3 of a state that doubles. By matrices it is 4 · 2.
+///
+/// ```
+/// use immaculate::filter::cubature::motion_cross_covariance;
+/// use nalgebra::{matrix, vector};
+///
+/// let (points, propagated) = ([vector![7.0], vector![3.0]], [vector![14.0], vector![6.0]]);
+/// let covariance = motion_cross_covariance(&[0.5, 0.5], &points, &vector![5.0], &propagated, &vector![10.0]);
+/// assert_eq!(covariance, matrix![8.0]); // ½ · 2 · 4 + ½ · (−2) · (−4)
+/// ```
+///
+/// Evidence: `points_of_a_linear_motion_have_the_cross_covariance_of_its_matrix` (smoothers, exact).
+pub fn motion_cross_covariance<T: Field, N: Dim>(
+    weights: &[T],
+    points: &[OVector<T, N>],
+    mean: &OVector<T, N>,
+    propagated: &[OVector<T, N>],
+    predicted_mean: &OVector<T, N>,
+) -> OMatrix<T, N, N>
+where
+    Shapes: Holds<N>,
+{
+    let mut covariance = OMatrix::zeros_generic(rows(mean), rows(mean));
+    for ((weight, point), moved) in weights.iter().zip(points).zip(propagated) {
+        let deviation = moved - predicted_mean;
+        covariance += ((point - mean) * deviation.transpose()) * weight.clone();
+    }
+    covariance
+}

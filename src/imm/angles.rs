@@ -20,7 +20,7 @@ use super::Equations;
 use super::problem::Problem;
 use super::state_conversion::{Reader, estimates_read};
 use crate::filter::Transform;
-use crate::gaussian::Gaussian;
+use crate::gaussian::{Gaussian, mixture_covariance, mixture_mean};
 use crate::matrix::{Holds, Shapes};
 use crate::model::angle::wrap;
 use crate::number::Real;
@@ -118,6 +118,20 @@ where
         covariance: estimate.covariance.clone(),
     };
     Cow::Owned(estimates.iter().map(near).collect())
+}
+
+/// One estimate for several of one state, with the moments of their mixture; its angles are in (−π, π].
+pub(crate) fn merged<T: Real, N: Dim>(angles: &[usize], weights: &[T], estimates: &[Gaussian<T, N>]) -> Gaussian<T, N>
+where
+    Shapes: Holds<N>,
+{
+    let mean = mixture_mean(weights, &in_one_turn(angles, Cow::Borrowed(estimates), None));
+    let near = in_one_turn(angles, Cow::Borrowed(estimates), Some(&mean));
+    let covariance = mixture_covariance(weights, &near, &mean);
+    Gaussian {
+        mean: wrapped(angles, mean),
+        covariance,
+    }
 }
 
 /// Points of mode j with their angles in the turn of a reference; as they are where there is no angle.

@@ -163,6 +163,33 @@ where
     }
 }
 
+/// D, the covariance of the state before the motion and after it: what a smoother makes its gain of.
+#[inline(always)]
+pub(crate) fn motion_cross_covariance<T: Real, N: Dim, M: Dim>(
+    problem: &Problem<T, N, M>,
+    j: usize,
+    mixed: &Gaussian<T, N>,
+    jacobian: Option<&OMatrix<T, N, N>>,
+    mixed_points: &[OVector<T, N>],
+    propagated_points: &[OVector<T, N>],
+    predicted_mean: &OVector<T, N>,
+) -> OMatrix<T, N, N>
+where
+    Shapes: Holds<N, M>,
+{
+    match &problem.filter(j).predict {
+        Transform::Exact | Transform::Linearised => {
+            let f = motion_matrix(problem, j, &mixed.mean, jacobian);
+            kalman::cross_covariance::<T, N, N>(&mixed.covariance, &f)
+        }
+        Transform::Points(rule) => {
+            let propagated = points_near(problem, j, propagated_points, predicted_mean);
+            let weights = &rule.covariance_weights;
+            cubature::motion_cross_covariance(weights, mixed_points, &mixed.mean, &propagated, predicted_mean)
+        }
+    }
+}
+
 /// x_{N−1}; none for a filter that linearises the measurement at the predicted mean, or not at all.
 #[inline(always)]
 pub(super) fn linearisation_point<T: Real, N: Dim, M: Dim>(

@@ -10,6 +10,7 @@
 
 use super::angles::{estimates_near, estimates_near_first, wrapped};
 use super::by_kind;
+use super::equations::Points;
 use super::failure::{Cause, Failure, check_combined, check_measurement, check_slopes, failure, not_definite};
 use super::record::Quantity;
 use super::state_conversion::Reader;
@@ -150,7 +151,7 @@ where
 
 /// Mean and covariance of a mixture, as the reader has the states.
 #[inline(always)]
-fn mixture<T: Real, N: Dim, M: Dim>(
+pub(super) fn mixture<T: Real, N: Dim, M: Dim>(
     problem: &Problem<T, N, M>,
     reader: Reader,
     weights: &[T],
@@ -184,20 +185,52 @@ where
         let mixing: [T; MODES] =
             from_fn(|i| by_kind::mixing_probability(problem, probabilities, predicted_probability, i, j));
         let mixed = mixture(problem, Reader::Mode(j), &mixing, &before.modes);
-        let points = by_kind::mixed_points(problem, j, &mixed)
-            .map_err(|pivot| not_definite(problem, now.step, j, Quantity::PredictedMean, "mixed covariance", pivot))?;
-        let points = by_kind::propagated_points(problem, j, &points);
-        let predicted = &mut now.modes[j];
-        predicted.mean = by_kind::predicted_mean(problem, j, &mixed.mean, &points);
-        if !problem.has_covariances() {
-            continue;
-        }
-        let jacobian = by_kind::motion_jacobian(problem, j, &mixed.mean);
-        check_slopes(problem, now.step, j, Quantity::MotionJacobian, jacobian.as_ref())?;
-        predicted.covariance =
-            by_kind::predicted_covariance(problem, j, &mixed, jacobian.as_ref(), &points, &predicted.mean);
+        predict_mode(problem, now.step, j, &mixed, &mut now.modes[j])?;
     }
     Ok(())
+}
+
+/// What a prediction was computed from.
+pub(crate) struct Moved<T: Real, N: Dim>
+where
+    Shapes: Holds<N>,
+{
+    /// The points before the motion; none for a filter that draws none.
+    pub(crate) points: Points<T, N>,
+    /// The points after the motion.
+    pub(crate) propagated: Points<T, N>,
+    /// F, of a filter that linearises the motion.
+    pub(crate) jacobian: Option<OMatrix<T, N, N>>,
+}
+
+/// Writes the prediction of mode j from an estimate, mixed or not: in its place, as moving a covariance there takes time.
+#[inline(always)]
+pub(crate) fn predict_mode<T: Real, N: Dim, M: Dim>(
+    problem: &Problem<T, N, M>,
+    step: usize,
+    j: usize,
+    from: &Gaussian<T, N>,
+    predicted: &mut Gaussian<T, N>,
+) -> Result<Moved<T, N>, Failure>
+where
+    Shapes: Holds<N, M>,
+{
+    let points = by_kind::mixed_points(problem, j, from)
+        .map_err(|pivot| not_definite(problem, step, j, Quantity::PredictedMean, "mixed covariance", pivot))?;
+    let propagated = by_kind::propagated_points(problem, j, &points);
+    predicted.mean = by_kind::predicted_mean(problem, j, &from.mean, &propagated);
+    let mut jacobian = None;
+    if problem.has_covariances() {
+        jacobian = by_kind::motion_jacobian(problem, j, &from.mean);
+        check_slopes(problem, step, j, Quantity::MotionJacobian, jacobian.as_ref())?;
+        predicted.covariance =
+            by_kind::predicted_covariance(problem, j, from, jacobian.as_ref(), &propagated, &predicted.mean);
+    }
+    Ok(Moved {
+        points,
+        propagated,
+        jacobian,
+    })
 }
 
 /// Updates each mode and the mode probabilities.
@@ -237,7 +270,7 @@ where
 
 /// Updates the prediction of mode j with what its filter uses of the measurement, and its covariance; gives ln Lⱼ.
 #[inline(always)]
-fn update_mode<T: Real, N: Dim, M: Dim>(
+pub(super) fn update_mode<T: Real, N: Dim, M: Dim>(
     problem: &Problem<T, N, M>,
     step: usize,
     j: usize,
