@@ -10,7 +10,7 @@ use immaculate::filter::fixed_gain::FixedGain;
 use immaculate::filter::{Filter, Transform, Update};
 use immaculate::gaussian::Gaussian;
 use immaculate::imm::state_conversion::{Reader, StateConversion, StateConversions};
-use immaculate::imm::{Cause, Equations, Imm, Initial, Interaction, InvalidProblem, PlainImm, Problem, Quantity};
+use immaculate::imm::{Cause, Equations, Gpb2, Imm, Initial, Interaction, InvalidProblem, PlainImm, Problem, Quantity};
 use immaculate::matrix::{NotPositiveDefinite, cholesky};
 use immaculate::model::angle::wrap;
 use immaculate::model::function::Function;
@@ -1540,6 +1540,20 @@ fn a_plain_filter_has_as_many_modes_as_it_is_built_for() {
 }
 
 #[test]
+fn the_filter_of_second_order_is_given_the_problem_of_the_interacting_one() {
+    for interaction in [Interaction::Gpb1, Interaction::Unmixed] {
+        let mut scene = linear_scene();
+        scene.problem.interaction = interaction;
+        let error = Gpb2::new(scene.problem, &scene.initial).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "`interaction` says which estimates the modes start from, and the filter of second order starts each from every one; use \
+             `Interaction::Imm` (Chang and Athans 1978)"
+        );
+    }
+}
+
+#[test]
 fn an_estimate_that_overflows_is_an_error_even_without_a_detection() {
     // Each prediction multiplies the covariances by 10²⁰⁰: the second one is beyond the doubles.
     let mut scene = linear_scene();
@@ -1976,6 +1990,7 @@ fn problem_test(error: &InvalidProblem) -> &'static str {
         InvalidProblem::NothingToDrawFrom => "a_filter_with_a_given_gain_draws_no_points",
         InvalidProblem::SomeGiven => "gains_are_given_to_all_modes_or_to_none",
         InvalidProblem::OtherModes { .. } => "a_plain_filter_has_as_many_modes_as_it_is_built_for",
+        InvalidProblem::OtherInteraction => "the_filter_of_second_order_is_given_the_problem_of_the_interacting_one",
         InvalidProblem::OtherKind => "a_filter_does_not_go_on_with_gains_of_the_other_kind",
         InvalidProblem::CovarianceGiven { .. } => "a_filter_with_fixed_gains_has_no_covariance",
         InvalidProblem::RuleLengths { .. } => "a_rule_has_one_weight_a_point",

@@ -107,6 +107,11 @@ pub enum InvalidProblem {
         "`filters` gives gains where the run computes them, or the reverse; begin a new run instead (derbez2000 (2))"
     )]
     OtherKind,
+    /// The filter of second order was given a problem of another one.
+    #[error(
+        "`interaction` says which estimates the modes start from, and the filter of second order starts each from every one; use `Interaction::Imm` (Chang and Athans 1978)"
+    )]
+    OtherInteraction,
     /// A plain filter was given another number of modes than it is built for.
     #[error(
         "`modes` has {found} entries where the filter is built for {expected}; give it as many modes as `MODES` says"

@@ -62,7 +62,8 @@ where
 {
     /// Each from the estimates of all modes, mixed: the interacting multiple model filter.
     Imm,
-    /// Each from the combined estimate of the step before: the generalised pseudo-Bayesian filter of first order.
+    /// Each from the combined estimate of the step before: the generalised pseudo-Bayesian filter of first order. The one of second order
+    /// is [`Gpb2`](super::Gpb2).
     ///
     /// Source: G. A. Ackerson and K. S. Fu, On State Estimation in Switching Environments, 1970; Y. Bar-Shalom, X. R. Li and
     /// T. Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001, section 11.6.4 (GPB1).

@@ -442,6 +442,7 @@ fn of_problem(error: &InvalidProblem) -> Invalid {
         | InvalidProblem::CorrelationWithoutSlopes { .. }
         | InvalidProblem::OtherKind
         | InvalidProblem::OtherModes { .. }
+        | InvalidProblem::OtherInteraction
         | InvalidProblem::NothingToDrawFrom
         | InvalidProblem::TwoConversions
         | InvalidProblem::NotRangeAndBearing
