@@ -131,7 +131,7 @@ const MOST_GROWTH: f64 = 1.25;
 
 impl<'a> Derivatives<'a> {
     fn of(problem: &'a ProblemFile) -> Result<Self, Invalid> {
-        let quick = problem.setup(|value| Gradient::constant(Interval::exact(value)))?;
+        let quick = problem.setup_undeclared(|value| Gradient::constant(Interval::exact(value)))?;
         Ok(Self {
             problem,
             quick: Runner::of(passing_on(quick)),
@@ -161,7 +161,9 @@ impl<'a> Derivatives<'a> {
             let runner = match &mut self.fine {
                 Some(runner) => runner,
                 none => {
-                    let setup = self.problem.setup(|value| Gradient::constant(Enclosure::exact(value)));
+                    let setup = self
+                        .problem
+                        .setup_undeclared(|value| Gradient::constant(Enclosure::exact(value)));
                     none.insert(Runner::of(passing_on(setup.map_err(|invalid| invalid.to_string())?)))
                 }
             };

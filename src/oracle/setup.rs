@@ -84,6 +84,16 @@ impl ProblemFile {
     ///
     /// [`Invalid`] for a measurement, rule or dimension that does not exist.
     pub fn setup<T: Real>(&self, number: fn(f64) -> T) -> Result<Setup<T>, Invalid> {
+        Ok(self.setup_undeclared(number)?.varied(&self.declared))
+    }
+
+    /// The problem in a number system without the conventions that a program has declared. A number system that never runs one then needs
+    /// no code for the whole catalogue.
+    ///
+    /// # Errors
+    ///
+    /// As [`ProblemFile::setup`].
+    pub(crate) fn setup_undeclared<T: Real>(&self, number: fn(f64) -> T) -> Result<Setup<T>, Invalid> {
         self.setup_with_rules(number, |filter, place| self.rule(filter, place, number))
     }
 
@@ -96,9 +106,10 @@ impl ProblemFile {
     ///
     /// As [`ProblemFile::setup`].
     pub fn setup_in_doubles(&self) -> Result<Setup<RandomRounding>, Invalid> {
-        self.setup_with_rules(RandomRounding::exact, |filter, place| {
+        let setup = self.setup_with_rules(RandomRounding::exact, |filter, place| {
             self.rule_in_doubles(filter, place)
-        })
+        })?;
+        Ok(setup.varied(&self.declared))
     }
 
     /// The problem in random rounding, every number perturbed.
@@ -117,9 +128,10 @@ impl ProblemFile {
             weights: rule.weights.iter().map(perturbed).collect(),
             covariance_weights: rule.covariance_weights.iter().map(perturbed).collect(),
         };
-        self.setup_with_rules(RandomRounding::input, |filter, place| {
+        let setup = self.setup_with_rules(RandomRounding::input, |filter, place| {
             Ok(self.rule_in_doubles(filter, place)?.map(perturbed_rule))
-        })
+        })?;
+        Ok(setup.varied(&self.declared))
     }
 
     /// The rule in doubles. It is computed once and kept: a search asks for it thousands of times.
@@ -178,7 +190,7 @@ impl ProblemFile {
             sensor: self.sensor(0, &functions, number, interval)?,
             measurement_noise: matrix(&self.noise, number),
         };
-        let setup = Setup {
+        Ok(Setup {
             changes: self.changes(&problem, &functions, number, interval)?,
             rates: self.rates_of_steps(number, interval),
             problem,
@@ -193,8 +205,7 @@ impl ProblemFile {
             },
             measurements: self.measurements.iter().map(of_step).collect(),
             truths: self.measurements.iter().map(truth_of).collect(),
-        };
-        Ok(setup.varied(&self.declared))
+        })
     }
 
     /// The modes in a step of this length.
