@@ -297,12 +297,37 @@ fn identical_modes_need_no_interaction() {
     let names: Vec<&str> = table.standings.iter().map(|one| one.name.as_str()).collect();
     assert_eq!(
         names,
-        ["IMM", "GPB1", "unmixed", "static bank", "one alone", "other alone"]
+        [
+            "IMM",
+            "GPB1",
+            "unmixed",
+            "static bank",
+            "GPB2",
+            "one alone",
+            "other alone"
+        ]
     );
     for one in &table.standings {
         // A few hundred roundings.
         assert!(apart(one, &table.standings[0]) < 1e-12, "{}", one.name);
     }
+}
+
+#[test]
+fn where_modes_never_change_gpb2_is_the_static_bank_and_gpb1_is_not() {
+    let mut problem = linear(2);
+    problem["transition"] = json!([[1.0, 0.0], [0.0, 1.0]]);
+    problem["measurements"][2]["R"] = json!([[0.2]]); // a step of its own
+    let result = compared(&problem, 20, 6);
+    let table = &result.tables[1];
+    let bank = standing(table, "static bank");
+    // A few hundred roundings.
+    assert!(apart(standing(table, "GPB2"), bank) < 1e-12);
+    assert!(apart(standing(table, "GPB1"), bank) > 1e-3);
+    assert!(
+        standing(table, "GPB2").nis.is_none(),
+        "it has no innovation of its own to show"
+    );
 }
 
 #[test]

@@ -12,7 +12,7 @@ use std::num::NonZeroUsize;
 const MOST_POINTS: u128 = 1000;
 
 /// There are at most this many filters and interactions, beside the modes alone.
-pub(super) const MOST: usize = 18;
+pub(super) const MOST: usize = 19;
 
 /// How often the iterated filter linearises.
 const ITERATIONS: usize = 5;
@@ -24,6 +24,8 @@ pub struct Contender {
     pub name: String,
     /// The problem with this filter.
     pub problem: ProblemFile,
+    /// Whether it is GPB2, which merges after the update; no problem file asks for it.
+    pub is_second_order: bool,
 }
 
 /// A filter that the problem cannot be given to.
@@ -68,6 +70,7 @@ impl Entrants {
         entrants.contenders.push(Contender {
             name: filter.clone(),
             problem: problem.clone(),
+            is_second_order: false,
         });
         for kind in kinds(problem.state.len()) {
             let name = kind_name(&kind);
@@ -84,6 +87,10 @@ impl Entrants {
             for (name, other) in other_interactions(problem) {
                 let place = entrants.enter(name, Ok(other));
                 entrants.interactions.extend(place);
+            }
+            if let Some(place) = entrants.enter("GPB2".to_owned(), second_order(problem)) {
+                entrants.contenders[place].is_second_order = true;
+                entrants.interactions.push(place);
             }
             for j in 0..problem.modes.len() {
                 let name = format!("{} alone", problem.modes[j].name);
@@ -102,7 +109,11 @@ impl Entrants {
         });
         match checked {
             Ok(problem) => {
-                self.contenders.push(Contender { name, problem });
+                self.contenders.push(Contender {
+                    name,
+                    problem,
+                    is_second_order: false,
+                });
                 Some(self.contenders.len() - 1)
             }
             Err(reason) => {
@@ -229,6 +240,18 @@ fn other_interactions(problem: &ProblemFile) -> Vec<(String, ProblemFile)> {
         others.push((name.to_owned(), other));
     }
     others
+}
+
+/// The problem as GPB2 reads it: that of the interacting filter.
+fn second_order(problem: &ProblemFile) -> Result<ProblemFile, String> {
+    if let FilterFile::FixedGain { .. } = problem.filter {
+        return Err("the file has fixed gains, and GPB2 merges covariances".to_owned());
+    }
+    let mut other = problem.clone();
+    if other.interaction() != InteractionFile::Imm {
+        other.interaction = Some(InteractionFile::Imm);
+    }
+    Ok(other)
 }
 
 /// Replaces the chain of the problem, in every step.

@@ -101,7 +101,7 @@ impl NotCompared {
 #[derive(Debug)]
 pub struct Contest {
     entrants: Entrants,
-    setups: Vec<Setup<RandomRounding>>,
+    filters: Vec<(Setup<RandomRounding>, bool)>,
     operations: Vec<Option<f64>>,
     runs: Vec<SimulatedRun>,
     seed: u64,
@@ -142,14 +142,15 @@ impl Contest {
         let entrants = Entrants::new(&problem);
         let simulation = TruthModel::new(&problem)?;
         let first = simulation.run(sample.seed, 0)?;
-        let mut setups = Vec::with_capacity(entrants.contenders.len());
+        let mut filters = Vec::with_capacity(entrants.contenders.len());
         let mut operations = Vec::with_capacity(entrants.contenders.len());
         for contender in &entrants.contenders {
             let mut problem = contender.problem.clone();
             // Neither the time nor the filter needs the modes' own normalised innovations.
             problem.lacks_consistency = true;
-            setups.push(problem.setup_in_doubles().map_err(NotCompared::Problem)?);
-            operations.push(race::operations(&problem, &first).map_err(NotCompared::Problem)?);
+            let setup = problem.setup_in_doubles().map_err(NotCompared::Problem)?;
+            filters.push((setup, contender.is_second_order));
+            operations.push(race::operations(contender, &first).map_err(NotCompared::Problem)?);
         }
         let of_run: f64 = operations.iter().flatten().sum::<f64>() * steps as f64;
         let affordable = RUNS.into_iter().find(|runs| *runs as f64 * of_run <= OPERATIONS);
@@ -159,7 +160,7 @@ impl Contest {
         Ok(Self {
             runs: simulation.runs(sample.seed, runs)?,
             entrants,
-            setups,
+            filters,
             operations,
             seed: sample.seed,
         })
@@ -173,7 +174,7 @@ impl Contest {
     /// Runs every filter and compares them.
     pub fn run(&self, done: RunDone) -> FilterComparison {
         let groups = group::groups(&self.entrants.contenders[0].problem);
-        let outcomes = race::race(&self.setups, &groups, &self.runs, done);
+        let outcomes = race::race(&self.filters, &groups, &self.runs, done);
         standing::compare(self, &groups, &outcomes)
     }
 }

@@ -1,11 +1,11 @@
 //! The runs: every filter along the same measurements, and what becomes of each.
 
+use super::contenders::Contender;
 use super::group::ErrorGroup;
 use super::truth::SimulatedRun;
-use crate::imm::{Equations, Problem, angles};
+use crate::imm::{Equations, Failure, Gpb2, Imm, Problem, angles};
 use crate::number::{Counted, RandomRounding, Real};
 use crate::oracle::invalid::Invalid;
-use crate::oracle::problem::ProblemFile;
 use crate::oracle::setup::Setup;
 use crate::statistics::consistency::nis;
 use nalgebra::{DVector, Dyn};
@@ -31,22 +31,57 @@ pub struct FilterRun {
     pub time: f64,
 }
 
+/// A filter on its way.
+#[derive(Debug, Clone)]
+struct Runner<T: Real> {
+    /// The cycle, with the record of its step; of GPB2 only the combined estimate is recorded.
+    filter: Imm<T, Dyn, Dyn>,
+    second_order: Option<Gpb2<T, Dyn, Dyn>>,
+}
+
+impl<T: Real> Runner<T> {
+    /// The filter at step 0.
+    fn new(setup: &Setup<T>, is_second_order: bool) -> Self {
+        Self {
+            filter: setup.filter(),
+            second_order: is_second_order.then(|| Gpb2::unchecked(setup.problem.clone(), &setup.initial)),
+        }
+    }
+
+    /// The next step, in the problem that it has.
+    fn step(&mut self, setup: &Setup<T>, step: usize, z: Option<&DVector<T>>) -> Result<(), Failure> {
+        if !setup.changes.is_empty() {
+            self.filter.change_unchecked(setup.problem_of(step));
+        }
+        match &mut self.second_order {
+            None => self.filter.step(z).map(drop),
+            Some(filter) => {
+                if !setup.changes.is_empty() {
+                    filter.change_unchecked(setup.problem_of(step));
+                }
+                self.filter.current_mut().combined.clone_from(filter.step(z)?);
+                Ok(())
+            }
+        }
+    }
+}
+
 /// Called once for each finished run.
 pub type RunDone<'a> = &'a (dyn Fn() + Sync);
 
-/// Every filter along every run; the result is `[run][filter]`.
+/// Every filter along every run; the result is `[run][filter]`. Beside each problem stands whether GPB2 runs it.
 pub fn race(
-    setups: &[Setup<Double>],
+    filters: &[(Setup<Double>, bool)],
     groups: &[ErrorGroup],
     runs: &[SimulatedRun],
     done: RunDone,
 ) -> Vec<Vec<FilterRun>> {
     let one = |(number, run): (usize, &SimulatedRun)| {
-        let mut outcomes: Vec<Option<FilterRun>> = vec![None; setups.len()];
+        let mut outcomes: Vec<Option<FilterRun>> = vec![None; filters.len()];
         // Each run begins with another filter, so that none is always the first to be timed.
-        for place in 0..setups.len() {
-            let filter = (number + place) % setups.len();
-            outcomes[filter] = Some(follow(&setups[filter], groups, run));
+        for place in 0..filters.len() {
+            let filter = (number + place) % filters.len();
+            outcomes[filter] = Some(follow(&filters[filter], groups, run));
         }
         done();
         outcomes.into_iter().flatten().collect()
@@ -55,8 +90,8 @@ pub fn race(
 }
 
 /// A filter along the measurements of a run, to their end or to the first step that cannot be computed.
-fn follow(setup: &Setup<Double>, groups: &[ErrorGroup], run: &SimulatedRun) -> FilterRun {
-    let mut filter = setup.filter();
+fn follow((setup, is_second_order): &(Setup<Double>, bool), groups: &[ErrorGroup], run: &SimulatedRun) -> FilterRun {
+    let mut runner = Runner::new(setup, *is_second_order);
     let n = setup.problem.n().0;
     let nees = Equations::standard().nees;
     let mut outcome = FilterRun {
@@ -70,24 +105,24 @@ fn follow(setup: &Setup<Double>, groups: &[ErrorGroup], run: &SimulatedRun) -> F
     let mut times = Vec::with_capacity(run.states.len());
     for (k, truth) in run.states.iter().enumerate() {
         let z = run.measurements[k].as_ref().map(|z| numbers(z, Double::exact));
-        if !setup.changes.is_empty() {
-            filter.change_unchecked(setup.problem_of(k + 1));
-        }
         let start = Instant::now();
-        let failure = filter.step(z.as_ref()).err();
+        let failure = runner.step(setup, k + 1, z.as_ref()).err();
         times.push(start.elapsed().as_secs_f64());
         if let Some(failure) = failure {
             outcome.failure = Some(failure.to_string());
             return outcome;
         }
         let truth = numbers(truth, Double::exact);
+        let filter = &mut runner.filter;
         let errors = errors(filter.problem(), &filter.current().combined.mean, &truth);
         for (sum, error) in outcome.components.iter_mut().zip(&errors) {
             *sum += error * error / run.states.len() as f64;
         }
         let of_group = |group: &ErrorGroup| group.entries.iter().map(|&entry| errors[entry] * errors[entry]).sum();
         outcome.squares.push(groups.iter().map(of_group).collect());
-        outcome.nis.extend(nis(filter.current()).map(Double::value));
+        if !is_second_order {
+            outcome.nis.extend(nis(filter.current()).map(Double::value));
+        }
         filter.current_mut().truth = Some(truth);
         let square = setup.problem.has_covariances().then(|| {
             let now = filter.current();
@@ -126,19 +161,16 @@ fn numbers<T: Real>(values: &[f64], number: fn(f64) -> T) -> DVector<T> {
 /// # Errors
 ///
 /// [`Invalid`] for a problem that cannot be set up.
-pub fn operations(problem: &ProblemFile, run: &SimulatedRun) -> Result<Option<f64>, Invalid> {
-    let mut problem = problem.clone();
+pub fn operations(contender: &Contender, run: &SimulatedRun) -> Result<Option<f64>, Invalid> {
+    let mut problem = contender.problem.clone();
     // The normalised innovations are no part of the filter.
     problem.lacks_consistency = true;
-    let setup = problem.setup(Counted::new)?;
-    let mut filter = setup.filter();
+    let setup = problem.setup_undeclared(Counted::new)?;
+    let mut runner = Runner::new(&setup, contender.is_second_order);
     let (mut sum, mut steps) = (0, 0_u32);
     for (k, z) in run.measurements.iter().enumerate() {
         let z = z.as_ref().map(|z| numbers(z, Counted::new));
-        if !setup.changes.is_empty() {
-            filter.change_unchecked(setup.problem_of(k + 1));
-        }
-        let (is_computed, operations) = Counted::during(|| filter.step(z.as_ref()).is_ok());
+        let (is_computed, operations) = Counted::during(|| runner.step(&setup, k + 1, z.as_ref()).is_ok());
         if !is_computed {
             break;
         }

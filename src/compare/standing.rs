@@ -354,7 +354,8 @@ impl Scores<'_> {
 
     /// The NIS of all steps and runs: innovations of a matched filter are independent from step to step.
     fn nis(&self, filter: usize, runs: &[usize]) -> Option<SquareTest> {
-        if self.detections == 0 {
+        let is_there = |&run: &usize| self.outcomes[run][filter].nis.len() == self.detections;
+        if self.detections == 0 || !runs.iter().all(is_there) {
             return None;
         }
         let of_run = |&run: &usize| self.outcomes[run][filter].nis.iter().sum::<f64>() / self.detections as f64;

@@ -99,16 +99,27 @@ where
             return Err(InvalidProblem::OtherInteraction);
         }
         problem.check(initial)?;
+        Ok(Self::unchecked(problem, initial))
+    }
+
+    /// The filter at step 0, of a problem that has been checked.
+    pub(crate) fn unchecked(problem: Problem<T, N, M>, initial: &Initial<T, N>) -> Self {
         let modes = problem.estimates_at_start(initial);
         let mode_probabilities = initial.mode_probabilities.clone();
         let combined = mixture(&problem, Reader::Common, &mode_probabilities, &modes);
-        Ok(Self {
+        Self {
             problem,
             step: 0,
             modes,
             mode_probabilities,
             combined,
-        })
+        }
+    }
+
+    /// The problem from the next step on, which has been checked.
+    #[cfg(feature = "cli")]
+    pub(crate) fn change_unchecked(&mut self, problem: &Problem<T, N, M>) {
+        self.problem.clone_from(problem);
     }
 
     /// The combined estimate of the last step; of the initial estimates before the first.
