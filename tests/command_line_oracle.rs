@@ -9,6 +9,7 @@ mod common;
 use common::program::{error_of, immaculate, names};
 use immaculate::imm::{Needs, Quantity};
 use immaculate::oracle::case::{self, Case, Expected};
+use immaculate::oracle::certify::certify;
 use immaculate::oracle::csv;
 use immaculate::oracle::problem::ProblemFile;
 use immaculate::oracle::run::run_in_doubles;
@@ -409,11 +410,43 @@ fn copied_cases_are_the_published_files() {
     }
 }
 
+/// Exact: with a convention, the copied trace is that of `trace` with the same convention, and the folder says which it is.
+#[test]
+fn copied_cases_follow_a_declared_convention() {
+    let folder = temporary("copy with a convention");
+    let id = "convention.first-step";
+    let copied = |convention: &str| {
+        succeeds(&[
+            "cases",
+            "copy",
+            folder.to_str().unwrap(),
+            "--case",
+            id,
+            "--convention",
+            convention,
+        ]);
+        let text = std::fs::read_to_string(folder.join(format!("{id}.trace.json"))).unwrap();
+        let steps = parsed(&text)["steps"].clone();
+        Trace::from_json(&steps, &of(id).problem.dimensions()).unwrap()
+    };
+    assert_eq!(Expected::Trace(copied("first_step=mixed")), of(id).expected);
+    let mut problem = of(id).problem.clone();
+    problem.declared = vec!["first-step-predicted"];
+    assert_eq!(copied("first_step=predicted"), certify(&problem).unwrap().trace);
+    let chosen = parsed(&std::fs::read_to_string(folder.join("conventions.json")).unwrap());
+    assert_eq!(chosen, json!({ "first_step": "predicted" }));
+}
+
 #[test]
 fn nothing_is_written_when_copying_is_refused() {
     let folder = temporary("not copied");
     let place = folder.to_str().unwrap();
-    for selection in [&["--case", "no.such"][..], &["--flag", "no-such"], &["--colour", "red"]] {
+    for selection in [
+        &["--case", "no.such"][..],
+        &["--flag", "no-such"],
+        &["--colour", "red"],
+        &["--convention", "first_step=prior"],
+    ] {
         refuses(&[&["cases", "copy", place], selection].concat(), 2);
         assert!(!folder.exists(), "{selection:?}");
     }

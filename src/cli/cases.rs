@@ -4,16 +4,19 @@
 
 use super::progress::bar;
 use super::select::Select;
+use super::trace::declared;
 use super::{Done, Refusal, json_text, make_directory, write_file};
 use clap::{Args, Subcommand, ValueEnum};
-use immaculate::oracle::case::{self, Expected};
-use immaculate::oracle::certify::long_csv;
+use immaculate::oracle::case::{self, Case, Expected};
+use immaculate::oracle::certify::{certify, long_csv};
 use immaculate::oracle::flags::FLAGS;
 use immaculate::oracle::schema;
 use immaculate::oracle::trace::Dimensions;
 use immaculate::report;
 use rayon::prelude::*;
 use serde_json::json;
+use std::collections::BTreeMap;
+use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 #[derive(Args)]
@@ -46,6 +49,9 @@ enum Action {
         folder: PathBuf,
         #[command(flatten)]
         select: Select,
+        /// Certify the traces anew with another convention than the papers, such as `first_step=predicted`; may be repeated
+        #[arg(long = "convention", value_name = "KEY=VALUE")]
+        conventions: Vec<String>,
     },
     /// Prove every number of the cases again, from the problems alone
     Verify {
@@ -75,7 +81,11 @@ pub fn run(arguments: &CasesArguments) -> Result<Done, Refusal> {
     match &arguments.action {
         Action::List { select, json } => list(select, *json),
         Action::Show { id, json } => show(id, *json),
-        Action::Copy { folder, select } => copy(folder, select),
+        Action::Copy {
+            folder,
+            select,
+            conventions,
+        } => copy(folder, select, conventions),
         Action::Verify { select, json } => verify(select, *json),
         Action::Schema { of: Format::Problem } => Ok(json_text(&schema::of_problems()).into()),
         Action::Schema { of: Format::Trace } => Ok(json_text(&schema::of_traces()).into()),
@@ -123,25 +133,68 @@ fn show(id: &str, as_json: bool) -> Result<Done, Refusal> {
     Ok(report::cases::show(case).into())
 }
 
-fn copy(folder: &Path, select: &Select) -> Result<Done, Refusal> {
+fn copy(folder: &Path, select: &Select, conventions: &[String]) -> Result<Done, Refusal> {
     let cases = select.cases()?;
+    let declared = declared(conventions)?;
     make_directory(folder)?;
-    let mut files = 0;
-    for case in &cases {
-        let id = &case.problem.id;
-        write_file(&folder.join(case::problem_name(id)), case.problem_text)?;
-        write_file(&folder.join(case::trace_name(id)), case.trace_text)?;
-        files += 2;
-        if let Expected::Trace(trace) = &case.expected {
-            write_file(
-                &folder.join(format!("{id}.trace.csv")),
-                &long_csv(&case.problem, trace, case.trace_text),
-            )?;
-            files += 1;
+    let bar = bar(cases.len(), "copying {wide_bar} {pos}/{len} cases, {eta} left");
+    let copies: Vec<_> = cases
+        .par_iter()
+        .map(|case| {
+            let copied = copy_of(case, &declared);
+            bar.inc(1);
+            (&case.problem.id, copied)
+        })
+        .collect();
+    bar.finish_and_clear();
+    let (mut files, mut left_out) = (0, String::new());
+    for (id, copied) in copies {
+        match copied {
+            Ok(copied) => {
+                for (name, text) in &copied {
+                    write_file(&folder.join(name), text)?;
+                }
+                files += copied.len();
+            }
+            Err(reason) => writeln!(left_out, "left out: {id}: {reason}").unwrap_or_default(),
         }
     }
+    if !conventions.is_empty() {
+        let chosen: BTreeMap<_, _> = conventions.iter().filter_map(|given| given.split_once('=')).collect();
+        write_file(&folder.join("conventions.json"), &json_text(&json!(chosen)))?;
+        files += 1;
+    }
     let text = format!("{} cases, {files} files written to {}\n", cases.len(), folder.display());
-    Ok(text.into())
+    Ok(format!("{left_out}{text}").into())
+}
+
+/// The files of a case by name: as published, or with the trace of other conventions.
+///
+/// # Errors
+///
+/// The reason why this case has no certified trace with these conventions.
+fn copy_of(case: &Case, declared: &[&'static str]) -> Result<Vec<(String, String)>, String> {
+    let id = &case.problem.id;
+    let (trace, trace_text) = match &case.expected {
+        Expected::Trace(_) if !declared.is_empty() => {
+            let mut problem = case.problem.clone();
+            problem.declared = declared.to_vec();
+            let certified = certify(&problem).map_err(|error| error.to_string())?;
+            let text = case::trace_text(id, &certified);
+            (Some(certified.trace), text)
+        }
+        Expected::Trace(trace) => (Some(trace.clone()), case.trace_text.to_owned()),
+        Expected::Rejection(_) => (None, case.trace_text.to_owned()),
+    };
+    let csv = trace.map(|trace| {
+        let text = long_csv(&case.problem, &trace, &trace_text);
+        (format!("{id}.trace.csv"), text)
+    });
+    let problem = (case::problem_name(id), case.problem_text.to_owned());
+    Ok([problem, (case::trace_name(id), trace_text)]
+        .into_iter()
+        .chain(csv)
+        .collect())
 }
 
 fn verify(select: &Select, as_json: bool) -> Result<Done, Refusal> {

@@ -59,7 +59,7 @@ pub fn run(arguments: &TraceArguments) -> Result<Done, Refusal> {
 }
 
 /// The variants of conventions that are given as `KEY=VALUE`.
-fn declared(conventions: &[String]) -> Result<Vec<&'static str>, Refusal> {
+pub(super) fn declared(conventions: &[String]) -> Result<Vec<&'static str>, Refusal> {
     let mut variants = Vec::new();
     for given in conventions {
         let Some((key, value)) = given.split_once('=') else {
