@@ -1027,6 +1027,37 @@ fn reading_and_writing_a_trace_is_the_identity() {
 /// A trace of one mode, two states and one measurement, one step.
 static SMALL: LazyLock<Dimensions> = LazyLock::new(|| Dimensions::new(2, 1, 1, 2));
 
+/// A likelihood is its logarithm, as long as a double has its digits; where both are shown the logarithm counts, in any order.
+#[test]
+fn a_likelihood_is_read_as_its_logarithm() {
+    let read = |mode: Value| {
+        let trace = Trace::from_json(&json!([{ "step": 1, "modes": [mode] }]), &SMALL)?;
+        Ok::<_, Invalid>(trace.get(1, Quantity::LogLikelihood, 0).cloned())
+    };
+    assert_eq!(read(json!({ "likelihood": 1.0 })), Ok(Some(vec![0.0])));
+    assert_eq!(
+        read(json!({ "likelihood": [2.0] })),
+        Ok(Some(vec![std::f64::consts::LN_2]))
+    );
+    assert_eq!(read(json!({ "likelihood": f64::MIN_POSITIVE / 2.0 })), Ok(None));
+    assert_eq!(read(json!({ "likelihood": 0 })), Ok(None));
+    for both in [
+        json!({ "likelihood": 2.0, "log_likelihood": -7.0 }),
+        json!({ "log_likelihood": -7.0, "likelihood": 2.0 }),
+    ] {
+        assert_eq!(read(both), Ok(Some(vec![-7.0])));
+    }
+    for wrong in [json!(-1.0), json!(null)] {
+        let found = read(json!({ "likelihood": wrong })).unwrap().unwrap();
+        assert!(!found[0].is_finite(), "{wrong}");
+    }
+    let invalid = read(json!({ "likelihood": [1.0, 2.0] })).unwrap_err();
+    assert_eq!(
+        invalid.to_string(),
+        "steps[0].modes[0].likelihood: has 2 numbers where 1 × 1 are needed"
+    );
+}
+
 /// The same step in the ways of different writers.
 #[test]
 fn answers_are_read_with_patience() {

@@ -7,6 +7,7 @@ use super::invalid::{Class, Invalid};
 use super::json::is_not_finite;
 pub use super::json::{NotJson, read_json};
 use crate::imm::{Needs, Quantity};
+use crate::number::Real;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
@@ -360,7 +361,26 @@ fn read_key(
         }
         return Ok(());
     }
+    if key == "likelihood" && at.1.is_some() {
+        return read_likelihood(trace, at, value, place);
+    }
     Err(unknown_key(place.to_owned()))
+}
+
+/// Reads a likelihood as its logarithm, unless that is shown too. What is below the normal numbers has lost its digits, or has become zero:
+/// of it nothing is known.
+fn read_likelihood(trace: &mut Trace, at: (usize, Option<usize>), value: &Value, place: &str) -> Result<(), Invalid> {
+    let quantity = Quantity::LogLikelihood;
+    if trace.get(at.0, quantity, at.1.unwrap_or(0)).is_some() {
+        return Ok(());
+    }
+    let mut numbers = Vec::new();
+    flatten(value, place, &mut numbers)?;
+    if numbers.iter().any(|number| (0.0..f64::MIN_POSITIVE).contains(number)) {
+        return Ok(());
+    }
+    let logarithms: Vec<f64> = numbers.iter().map(Real::ln).collect();
+    read_numbers(trace, at, quantity, &json!(logarithms), place)
 }
 
 fn unknown_key(place: String) -> Invalid {
