@@ -491,7 +491,7 @@ fn without_times(mut result: FilterComparison) -> FilterComparison {
     for one in result.tables.iter_mut().flat_map(|table| &mut table.standings) {
         assert!(
             one.time
-                .is_some_and(|time| time.median > 0.0 && time.microseconds > 0.0),
+                .is_some_and(|time| time.ratio.median > 0.0 && time.microseconds > 0.0),
             "{}",
             one.name
         );

@@ -788,6 +788,7 @@ fn every_figure_of_a_reproduction_is_that_of_its_runs() {
     assert_eq!(one.mode_probabilities, [[1.0]; 4]);
     // 24 µs in eight steps, 8 in eight.
     assert!((two.microseconds_per_step - 3.0).abs() < 1e-12 && (one.microseconds_per_step - 1.0).abs() < 1e-12);
+    assert_eq!(two.time_ratio.map(|ratio| ratio.median), Some(1.0)); // it is the first
 }
 
 /// Exact: means of a run's four values, then over the runs; and how many steps are within the bounds of two runs.

@@ -39,6 +39,7 @@ use immaculate::report::reproduction::SideBySide;
 use immaculate::rule::RuleName;
 use immaculate::rule::unscented::Parameters;
 use immaculate::statistics::Estimate;
+use immaculate::statistics::estimate::MedianRatio;
 use immaculate::steady::certificate::{Edge, Quadratics};
 use immaculate::steady::map::Map;
 use immaculate::steady::simulated::Grid;
@@ -721,7 +722,10 @@ fn performance(paper: Paper, name: &str, number: usize) -> Performance {
             },
         ],
         microseconds_per_step: 1.25 * (number + 1) as f64,
-        microseconds_standard_error: 0.01,
+        time_ratio: Some(MedianRatio {
+            median: (number + 1) as f64,
+            scatter: 0.01,
+        }),
     }
 }
 

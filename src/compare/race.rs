@@ -8,6 +8,7 @@ use crate::number::{Counted, RandomRounding, Real};
 use crate::oracle::invalid::Invalid;
 use crate::oracle::setup::Setup;
 use crate::statistics::consistency::nis;
+use crate::statistics::estimate::quantile;
 use nalgebra::{DVector, Dyn};
 use rayon::prelude::*;
 use std::time::Instant;
@@ -130,20 +131,8 @@ fn follow((setup, is_second_order): &(Setup<Double>, bool), groups: &[ErrorGroup
         });
         outcome.nees.push(square.flatten().map_or(f64::NAN, Double::value));
     }
-    outcome.time = quantile(&mut times, 0.5);
+    outcome.time = quantile(&mut times, 0.5).unwrap_or(f64::NAN);
     outcome
-}
-
-/// The value below which a part of the others lie; not a number where there is none.
-pub(super) fn quantile(values: &mut [f64], part: f64) -> f64 {
-    values.sort_by(f64::total_cmp);
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "between 0 and the length"
-    )]
-    let place = (part * values.len().saturating_sub(1) as f64).round() as usize;
-    values.get(place).copied().unwrap_or(f64::NAN)
 }
 
 /// Estimate minus truth, angles the short way round.

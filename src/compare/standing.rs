@@ -5,11 +5,13 @@
 use super::Contest;
 use super::contenders::{Absentee, Entrants};
 use super::group::{ErrorGroup, GroupName, group_name};
-use super::race::{FilterRun, quantile};
+use super::race::FilterRun;
 use crate::paper::verdict::DECISIVE;
 use crate::statistics::Estimate;
 use crate::statistics::consistency::bounds;
-use crate::statistics::estimate::{mean, paired_difference, paired_log_ratio, root_mean_square};
+use crate::statistics::estimate::{
+    MedianRatio, mean, median_ratio, paired_difference, paired_log_ratio, quantile, root_mean_square,
+};
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
@@ -154,10 +156,9 @@ pub enum Calibration {
 /// A ratio of times: it scatters with the load of the machine.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct TimeRatio {
-    /// The median over the runs.
-    pub median: f64,
-    /// Half of the distance between the quartiles.
-    pub scatter: f64,
+    /// Over the runs.
+    #[serde(flatten)]
+    pub ratio: MedianRatio,
     /// The median time of a step, µs.
     pub microseconds: f64,
 }
@@ -408,16 +409,11 @@ impl Scores<'_> {
             .outcomes
             .iter()
             .filter(|run| run[filter].failure.is_none() && run[0].failure.is_none());
-        let times = complete.map(|run| (run[filter].time / run[0].time, run[filter].time * 1e6));
-        let (mut ratios, mut own): (Vec<f64>, Vec<f64>) = times.unzip();
-        if ratios.is_empty() {
-            return None;
-        }
-        let (lower, upper) = (quantile(&mut ratios, 0.25), quantile(&mut ratios, 0.75));
+        let times = complete.map(|run| (run[filter].time, run[0].time));
+        let (mut own, of_file): (Vec<f64>, Vec<f64>) = times.unzip();
         Some(TimeRatio {
-            median: quantile(&mut ratios, 0.5),
-            scatter: (upper - lower) / 2.0,
-            microseconds: quantile(&mut own, 0.5),
+            ratio: median_ratio(&own, &of_file)?,
+            microseconds: 1e6 * quantile(&mut own, 0.5)?,
         })
     }
 }

@@ -9,7 +9,7 @@ use super::simulation::Run;
 use super::simulation::{Path, Simulation};
 use super::specification::Choices;
 use crate::statistics::consistency::bounds;
-use crate::statistics::estimate::{Estimate, mean};
+use crate::statistics::estimate::{Estimate, MedianRatio, median_ratio};
 use serde::Serialize;
 
 /// What a row of a published table is of.
@@ -98,9 +98,9 @@ pub struct Performance {
     pub delays: Vec<Delay>,
     /// Mean time spent in the filter's steps, microseconds a step. The only figure that differs from run to run.
     pub microseconds_per_step: f64,
-    /// Its standard error over the runs, as much as the machine did beside; not in files, as no two are alike.
+    /// The time of a run beside that of the first filter in the same run; not in files, as no two are alike.
     #[serde(skip)]
-    pub microseconds_standard_error: f64,
+    pub time_ratio: Option<MedianRatio>,
 }
 
 /// A run that ended early.
@@ -290,9 +290,11 @@ fn performance(comparison: &Comparison, c: usize) -> Performance {
         })
         .collect::<Vec<_>>();
     let steps: usize = of_contestant().map(|run| run.errors.len()).sum();
-    let of_runs: Vec<f64> = of_contestant()
-        .map(|run| 1e6 * run.time.as_secs_f64() / run.errors.len().max(1) as f64)
-        .collect();
+    // Of the steps that were computed, which are fewer in a run that failed.
+    let times_of = |c: usize| -> Vec<f64> {
+        let time = |run: &Vec<Run>| run[c].time.as_secs_f64() / run[c].errors.len().max(1) as f64;
+        comparison.runs.iter().map(time).collect()
+    };
     let seconds: f64 = of_contestant().map(|run| run.time.as_secs_f64()).sum();
     let (nees, nis) = comparison.consistency(c);
     let error = |quantity| ErrorFigure {
@@ -325,7 +327,7 @@ fn performance(comparison: &Comparison, c: usize) -> Performance {
         nis: consistency(comparison, c, nis, measured_components, |run| &run.nis),
         delays: delays(comparison, c),
         microseconds_per_step: 1e6 * seconds / steps as f64,
-        microseconds_standard_error: mean(&of_runs).standard_error,
+        time_ratio: median_ratio(&times_of(c), &times_of(0)),
     }
 }
 

@@ -8,13 +8,14 @@ use super::chart::{
     Area, Axis, Caption, Drawn, Key, Line, Look, NotDrawn, draw_lines, draw_path, figure, looks, panel, plain,
 };
 use super::palette::INK;
+use super::reproduction::time_ratio;
 use super::{standard_errors, table};
 use crate::number::Real;
-use crate::paper::result::{Performance, Reproduction};
+use crate::paper::result::Reproduction;
 use crate::paper::specification::Specification;
 use crate::paper::sustika2015::sweep::{FILTERS, Fit, SweepPoint, SweepSetting, SweptParameter, SweptTrajectory};
 use crate::paper::sustika2015::{DIVERGENT_FIT_ERROR, GOOD_FIT_ERROR};
-use crate::statistics::{Estimate, estimate};
+use crate::statistics::Estimate;
 use std::fmt::Write;
 
 const PANEL_HEIGHT: u32 = 330;
@@ -45,19 +46,14 @@ pub fn text(sweep: &[(SweepSetting, SweepPoint)], runs: usize) -> String {
 pub fn execution_times(specification: &Specification, reproduction: &Reproduction) -> Option<String> {
     let table = specification.tables.iter().find(|table| table.number == 6)?;
     let row = table.rows.iter().find(|row| row.unit == "s")?;
-    let (&[first, second], [converted, unscented]) = (&row.values[..], &reproduction.filters[..]) else {
+    let (&[first, second], [_, unscented]) = (&row.values[..], &reproduction.filters[..]) else {
         return None;
     };
-    let ratio = unscented.microseconds_per_step / converted.microseconds_per_step;
-    // The parts of both times by which they scatter, as if independent.
-    let share = |filter: &Performance| filter.microseconds_standard_error / filter.microseconds_per_step;
-    let scatter = ratio * (share(converted) * share(converted) + share(unscented) * share(unscented)).sqrt();
     Some(format!(
         "\nExecution times of other programs on another computer cannot be reproduced. The ratio in table 6 is {:.2}; here it is\n\
-         {} ± {}.\n",
+         {}.\n",
         second / first,
-        estimate::figure(ratio),
-        estimate::figure(scatter),
+        time_ratio(unscented),
     ))
 }
 

@@ -164,6 +164,61 @@ pub fn paired_log_ratio(a: &[Vec<f64>], b: &[Vec<f64>]) -> Estimate {
     }
 }
 
+/// A ratio, and how much it scatters.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct MedianRatio {
+    /// The median.
+    pub median: f64,
+    /// Half the distance of the quartiles.
+    pub scatter: f64,
+}
+
+/// The ratio of two times, measured in pairs: the median of aₘ/bₘ, and half the distance of its quartiles.
+///
+/// Source: order statistics.
+///
+/// Why: what a machine does beside makes some runs much slower, which moves a mean and no median, and the runs of one pair alike.
+///
+/// Example: a takes twice the time; the last run of both was disturbed.
+///
+/// ```
+/// use immaculate::statistics::estimate::median_ratio;
+///
+/// let ratio = median_ratio(&[2.0, 2.0, 2.0, 2.0, 90.0], &[1.0, 1.0, 1.0, 1.0, 9.0]).unwrap();
+/// assert_eq!((ratio.median, ratio.scatter), (2.0, 0.0));
+/// assert_eq!(median_ratio(&[], &[]), None);
+/// ```
+pub fn median_ratio(a: &[f64], b: &[f64]) -> Option<MedianRatio> {
+    let mut ratios: Vec<f64> = a.iter().zip(b).map(|(a_m, b_m)| a_m / b_m).collect();
+    let (lower, upper) = (quantile(&mut ratios, 0.25)?, quantile(&mut ratios, 0.75)?);
+    Some(MedianRatio {
+        median: quantile(&mut ratios, 0.5)?,
+        scatter: (upper - lower) / 2.0,
+    })
+}
+
+/// The value below which a part of the values lie, without interpolation; none where there are no values.
+///
+/// Source: order statistics.
+///
+/// Example: of five, the third is in the middle.
+///
+/// ```
+/// use immaculate::statistics::estimate::quantile;
+///
+/// assert_eq!(quantile(&mut [5.0, 1.0, 4.0, 2.0, 3.0], 0.5), Some(3.0));
+/// ```
+pub fn quantile(values: &mut [f64], part: f64) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "between 0 and the length"
+    )]
+    let place = (part * values.len().saturating_sub(1) as f64).round() as usize;
+    values.get(place).copied()
+}
+
 /// A figure with four significant digits, or a dash where there is none.
 pub fn figure(value: f64) -> String {
     // With i decimals, four digits are significant from LEAST[i] on.
