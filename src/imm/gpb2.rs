@@ -208,7 +208,7 @@ where
 }
 
 /// Probabilities after a measurement with these likelihoods, and the log-likelihood of it under all together.
-fn weighed<T: Real>(log_likelihoods: &[T], probabilities: &[T]) -> (Vec<T>, T) {
+pub(crate) fn weighed<T: Real>(log_likelihoods: &[T], probabilities: &[T]) -> (Vec<T>, T) {
     let relative = |place| probability::relative_likelihood(log_likelihoods, probabilities, place);
     let relative: Vec<T> = (0..probabilities.len()).map(relative).collect();
     let evidence = probability::evidence(&relative, probabilities);

@@ -13,10 +13,9 @@ use super::switching::{SwitchingSmoother, pair_probability};
 use super::unsmoothable::Unsmoothable;
 use crate::gaussian::{Gaussian, log_density};
 use crate::imm::angles::{merged, wrapped};
+use crate::imm::gpb2::weighed;
 use crate::imm::plain::predict_mode;
-use crate::imm::probability::{
-    evidence, mixing_probability, mode_probability, predicted_mode_probability, relative_likelihood,
-};
+use crate::imm::probability::{mixing_probability, predicted_mode_probability};
 use crate::imm::state_conversion::Reader;
 use crate::imm::{Failure, Imm, Interaction, Problem, by_kind};
 use crate::matrix::{Holds, Shapes, all_finite, ldl};
@@ -266,11 +265,7 @@ where
             log_density(&difference, &ldl(&pair.predicted.covariance))
         };
         let log_likelihoods: Vec<T> = pairs.iter().map(of_pair).collect();
-        let likelihood = |pair| relative_likelihood(&log_likelihoods, &mixing, pair);
-        let likelihoods: Vec<T> = (0..pairs.len()).map(likelihood).collect();
-        let sum = evidence(&likelihoods, &mixing);
-        let of_pair = |(likelihood, mixing): (&T, &T)| mode_probability(likelihood, mixing, &sum);
-        likelihoods.iter().zip(&mixing).map(of_pair).collect()
+        weighed(&log_likelihoods, &mixing).0
     }
 
     /// The state before, if mode i was its own and mode j the next.
