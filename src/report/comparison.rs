@@ -326,9 +326,7 @@ fn consistency_and_cost(of: &StandingTable) -> String {
             one.nis.as_ref().map_or_else(dash, nis),
             one.diverged.map_or_else(dash, |count| count.to_string()),
             one.operations.map_or_else(dash, |count| format!("{count:.0}")),
-            one.time.map_or_else(dash, |time| {
-                format!("{:.2} ± {:.2}", time.ratio.median, time.ratio.scatter)
-            }),
+            one.time.map_or_else(dash, |time| time.ratio.to_string()),
         ]);
     }
     never_broken(&mut rows, 0);

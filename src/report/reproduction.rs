@@ -316,10 +316,9 @@ fn consistency(reproduction: &Reproduction) -> comfy_table::Table {
 
 /// The time of a filter beside that of the first one, as a ratio with its scatter: times themselves are those of a machine.
 pub(super) fn time_ratio(filter: &Performance) -> String {
-    filter.time_ratio.map_or_else(
-        || "—".to_owned(),
-        |ratio| format!("{:.2} ± {:.2}", ratio.median, ratio.scatter),
-    )
+    filter
+        .time_ratio
+        .map_or_else(|| "—".to_owned(), |ratio| ratio.to_string())
 }
 
 /// The part of the steps that is inside the bounds; a filter without covariances has none.

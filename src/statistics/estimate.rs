@@ -134,8 +134,8 @@ pub fn paired_difference(a: &[f64], b: &[f64]) -> Estimate {
 ///
 /// Source: the delta method, d ln A/ds̄ = 1/(2A²), as in [`root_mean_square`].
 ///
-/// Why: metres and metres a second have no sum, but ratios of errors have no unit. exp λ is the geometric mean of the ratios, so filter B
-/// is as many per cent better in all groups together, and −λ is the answer to the question asked the other way round.
+/// Why: metres and metres a second have no sum, but ratios of errors have no unit. exp λ is the geometric mean of the ratios: it
+/// says how much better filter B is in all groups together. −λ is the answer to the question asked the other way round.
 ///
 /// Example: twice the error in one group and the same in the other: √2 − 1 or 41 % more.
 ///
@@ -173,11 +173,17 @@ pub struct MedianRatio {
     pub scatter: f64,
 }
 
+impl std::fmt::Display for MedianRatio {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        write!(f, "{:.2} ± {:.2}", self.median, self.scatter)
+    }
+}
+
 /// The ratio of two times, measured in pairs: the median of aₘ/bₘ, and half the distance of its quartiles.
 ///
 /// Source: order statistics.
 ///
-/// Why: what a machine does beside makes some runs much slower, which moves a mean and no median, and the runs of one pair alike.
+/// Why: other work on the machine makes some runs much slower. That moves a mean but not a median, and it slows both runs of a pair alike.
 ///
 /// Example: a takes twice the time; the last run of both was disturbed.
 ///
