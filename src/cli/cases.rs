@@ -147,13 +147,14 @@ fn copy(folder: &Path, select: &Select, conventions: &[String]) -> Result<Done, 
         })
         .collect();
     bar.finish_and_clear();
-    let (mut files, mut left_out) = (0, String::new());
+    let (mut written, mut files, mut left_out) = (0, 0, String::new());
     for (id, copied) in copies {
         match copied {
             Ok(copied) => {
                 for (name, text) in &copied {
                     write_file(&folder.join(name), text)?;
                 }
+                written += 1;
                 files += copied.len();
             }
             Err(reason) => writeln!(left_out, "left out: {id}: {reason}").unwrap_or_default(),
@@ -164,7 +165,7 @@ fn copy(folder: &Path, select: &Select, conventions: &[String]) -> Result<Done, 
         write_file(&folder.join("conventions.json"), &json_text(&json!(chosen)))?;
         files += 1;
     }
-    let text = format!("{} cases, {files} files written to {}\n", cases.len(), folder.display());
+    let text = format!("{written} cases, {files} files written to {}\n", folder.display());
     Ok(format!("{left_out}{text}").into())
 }
 
