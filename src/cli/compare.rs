@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 pub struct CompareArguments {
     /// The problem file (`-` for standard input), or the id of a published case
     file: PathBuf,
-    /// The number of runs; without it as many, up to 1000, as take some seconds
+    /// The number of runs; by default a number that takes some seconds, at most 1000
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=MOST_RUNS))]
     runs: Option<u64>,
     /// The seed of the random numbers

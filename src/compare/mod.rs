@@ -40,7 +40,7 @@ use truth::{SimulatedRun, TruthModel};
 /// How much is simulated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Sample {
-    /// The number of runs; none for as many as take some seconds.
+    /// The number of runs; none for a number that takes some seconds.
     pub runs: Option<usize>,
     /// The seed.
     pub seed: u64,
@@ -65,7 +65,7 @@ pub enum NotCompared {
     /// A standard error takes two runs.
     #[error("{0} runs have no standard error; at least {FEWEST_RUNS} are needed")]
     FewRuns(usize),
-    /// A covariance is none.
+    /// A covariance is not positive semidefinite.
     #[error("no truth can be drawn: the covariance of {0} is not positive semidefinite")]
     Covariance(String),
     /// A run has no truth.
@@ -107,13 +107,13 @@ pub struct Contest {
     seed: u64,
 }
 
-/// As many operations take some ten seconds on two cores.
+/// This many operations take some ten seconds on two cores.
 const OPERATIONS: f64 = 1.5e9;
 
 /// The numbers of runs to choose from.
 const RUNS: [usize; 7] = [1000, 500, 200, 100, 50, 20, 10];
 
-/// As many numbers fit into a gigabyte.
+/// This many numbers fit into a gigabyte.
 const MOST_NUMBERS: usize = 1 << 27;
 
 impl Contest {

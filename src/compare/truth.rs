@@ -56,7 +56,7 @@ impl TruthModel {
     ///
     /// # Errors
     ///
-    /// [`Invalid`] for a problem that cannot be set up; a sentence where a covariance is none.
+    /// [`Invalid`] for a problem that cannot be set up; a sentence for a covariance that is not positive semidefinite.
     pub fn new(problem: &ProblemFile) -> Result<Self, NotCompared> {
         let setup = problem.setup_in_doubles().map_err(NotCompared::Problem)?;
         let name = |j: usize| format!("mode `{}`", problem.modes[j].name);

@@ -304,7 +304,7 @@ where
     covariance
 }
 
-/// Covariance of a state and the next one, D, of which smoothers make their gain.
+/// Covariance of a state and the next one, D, from which smoothers compute their gain.
 ///
 /// Source: S. Särkkä, Unscented Rauch-Tung-Striebel Smoother, 2008.
 ///
